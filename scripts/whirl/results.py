@@ -154,6 +154,13 @@ class Study:
         return list(self.summary.get("modes", []))
 
     @property
+    def peaks(self):
+        """Peaks of a linear response as in summary.json, by place and falling height: dicts with place; speed, semi_major,
+        amplification_factor, separation_margin and required_margin as dicts with value, unit and uncertainty; stability; verdict;
+        notes. What is not known is not there."""
+        return list(self.summary.get("peaks", []))
+
+    @property
     def orbits(self):
         """The cycles that a branch kept, as a list of Orbit."""
         if not self.has("orbits/x", "orbits/y"):

@@ -6,7 +6,7 @@ import numpy as np
 from . import sweep_tables
 from .bifurcation import Followed
 from .locus import WORDS as LOCUS_WORDS
-from .response import peaks
+from .response import is_answer, number
 from .style import speed_axis
 from .units import WORDS, digits, person, with_bar
 
@@ -68,15 +68,17 @@ def unstable_from(study, factor, unit):
 def unbalance_response(study):
     if not study.has("response/speed", "response/semi_major"):
         return []
-    factor, unit = speed_axis(study.attribute("speed_unit", "rad/s"))[0], study.attribute("speed_unit", "rad/s")
-    speed = study.get("response/speed")
-    major = study.get("response/semi_major").reshape(len(speed), -1)
-    found = [(top, where, amplification, node) for k, node in enumerate(np.atleast_1d(study.get("response/node"))) for where, top, amplification in peaks(speed, major[:, k])]
+    said = [study.summary["stability"]] if study.summary.get("stability", "stable throughout") != "stable throughout" else []
+    known = [p for p in study.peaks if number(p, "semi_major") is not None and number(p, "speed") is not None and str(p.get("place")).startswith("node ")]
+    found = [p for p in known if is_answer(p)]
+    if not known:
+        return [*said, "no peak in the range"]
     if not found:
-        return ["no peak in the range"]
-    top, where, amplification, node = max(found)
-    words = f"largest peak {person(float(top), 'm', 3)} at node {node}, {digits(float(where * factor), 4)} {unit}"
-    return [words + (f", amplification {amplification:.3g}" if amplification else "")]
+        return [*said, f"{len(known)} peaks, none of which is a motion of the machine"]
+    p = max(found, key=lambda p: number(p, "semi_major"))
+    factor = number(p, "amplification_factor")
+    words = f"largest peak {person(number(p, 'semi_major'), 'm', 3)} at {p['place']}, {digits(number(p, 'speed'), 4)} {p['speed'].get('unit', '')}"
+    return [*said, words + (f", amplification {factor:.3g}" if factor is not None else "")]
 
 
 def branch(study):

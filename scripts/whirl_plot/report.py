@@ -9,7 +9,7 @@ from . import __main__ as plot
 from . import brief, style, sweep_tables, tables
 from .manifest import register
 from .subject import Drawn, results_directory, said_in_a_sentence
-from .units import digits, person, with_bar
+from .units import digits, person, scale_of, with_bar
 
 STYLE = """
 :root{--ink:#222;--grey:#6b7280;--line:#e3e7ec;--blue:#0b62a4;--bad:#c8102e}
@@ -65,7 +65,7 @@ def show(table, folded=False):
     right = [all(numeric(row[k]) for row in table.rows) for k in range(len(table.head))]
     mark = [" class=n" if r else "" for r in right]
     head = "".join(f"<th{m}>{escape(h)}</th>" for m, h in zip(mark, table.head))
-    verdict = {"no": "<span class=bad>no</span>", "unstable": "<span class=bad>unstable</span>"}
+    verdict = {word: f"<span class=bad>{word}</span>" for word in ("no", "unstable")}
     body = "".join("<tr>" + "".join(f"<td{m}>{verdict.get(str(c), escape(c))}</td>" for m, c in zip(mark, row)) + "</tr>" for row in table.rows)
     note = f"<p class=note>{escape(table.note)}</p>" if table.note else ""
     caption = "" if folded else f"<caption>{escape(table.caption)}</caption>"
@@ -135,6 +135,23 @@ def in_brief(results):
     return f"<h2 id=brief>In brief</h2><table>{rows}</table>" if rows else ""
 
 
+def at_service_speed(results):
+    """What is known of the machine at its service speed, as summary.json has it."""
+    service = results.summary.get("service_speed")
+    if not isinstance(service, dict):
+        return ""
+    rows = []
+    for fact in service.get("facts", []):
+        value, bar, unit = fact.get("value"), fact.get("uncertainty"), fact.get("unit", "")
+        if unit == "K" and value is not None:
+            value, unit = value - 273.15, "\u00b0C"
+        factor, name = scale_of(unit, value or 0.0)
+        shown = "" if value is None else f"{with_bar(value * factor, None if bar is None else bar * factor)} {name}".strip()
+        rows.append([fact.get("what", ""), shown, fact.get("place", ""), fact.get("mark", ""), fact.get("study") or ""])
+    table = tables.Table("", ["", "value", "place", "", "study"], rows)
+    return f"<h2 id=service>At the service speed, {escape(with_bar(service.get('value'), None))} {escape(service.get('unit', ''))}</h2>{show(table)}"
+
+
 def left_over(results):
     """Entries of summary.json without data in results.h5: studies that delivered nothing."""
     known = {s.name for s in results.studies}
@@ -201,6 +218,7 @@ def page_of(results):
         f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title><style>{STYLE}</style>",
         f"<h1>{title}</h1><p class=note>{', '.join(facts)}</p>",
         f"<nav><a href='#machine'>The machine</a>{links}<a href='#options'>Options</a></nav>",
+        warned([str(w) for w in summary.get("warnings", [])] if isinstance(summary.get("warnings"), list) else []), at_service_speed(results),
         in_brief(results), "<h2 id=machine>The machine</h2>", *(picture(p) for p in machine), *(show(t) for t in inputs), show(conventions, folded=True),
         *([f"<h2 id=together>All together</h2>{''.join(picture(p) for p in together)}"] if together else []),
         *([show(safe)] if safe else []), *(section(s, p) for s, p in studies), left_over(results),

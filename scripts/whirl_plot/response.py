@@ -2,61 +2,106 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import INK, X, Y, length_unit, save, speed_axis
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, runs, save, speed_axis
 
 NOTE = ("linear response, amplitudes 0-peak; lag behind the shaft angle: x = |X| cos(angle \u2212 lag), the heavy side points along x "
         "at angle 0 and phase 0")
 
 
-def peaks(speed, height):
-    """Peaks of a sampled curve as (speed, height, amplification factor): by the parabola through the highest sample and its
-    neighbours; N/(N2 - N1) at 0.707 of the height (API 684), None where the curve does not come down so far on both sides."""
-    found = []
-    for k in range(1, len(speed) - 1):
-        if not (height[k] > height[k - 1] and height[k] >= height[k + 1]):
-            continue
-        # Newton's form of the parabola through three unequally spaced points.
-        a = (height[k] - height[k - 1]) / (speed[k] - speed[k - 1])
-        c = ((height[k + 1] - height[k]) / (speed[k + 1] - speed[k]) - a) / (speed[k + 1] - speed[k - 1])
-        at = 0.5 * (speed[k - 1] + speed[k] - a / c)
-        top = height[k - 1] + a * (at - speed[k - 1]) + c * (at - speed[k - 1]) * (at - speed[k])
-        sides = []
-        for step in (-1, 1):
-            i = k
-            while 0 <= i + step < len(speed) and height[i] > top / np.sqrt(2):
-                i += step
-            if height[i] > top / np.sqrt(2):
-                break
-            w = (height[i - step] - top / np.sqrt(2)) / (height[i - step] - height[i])
-            sides.append(speed[i - step] + w * (speed[i] - speed[i - step]))
-        found.append((at, top, at / (sides[1] - sides[0]) if len(sides) == 2 else None))
-    return found
+def peaks_at(study, place):
+    """Peaks of a place in the list of the results: dicts as Study.peaks; `number` gives their numbers."""
+    return [p for p in study.peaks if isinstance(p, dict) and p.get("place") == place]
 
 
-def draw_lag(axis, x, phase, colour):
+def number(peak, name):
+    """A value of a peak; None where it is not known."""
+    value = (peak.get(name) or {}).get("value")
+    return value if isinstance(value, (int, float)) else None
+
+
+def is_answer(peak):
+    """Whether the linear response is a motion at the peak: about a stable equilibrium, with a film left in every bearing."""
+    return peak.get("stability", "stable") == "stable" and not any(str(n).startswith("no answer") for n in peak.get("notes", []))
+
+
+class Validity:
+    """Where along the speeds the linear response is a motion of the machine."""
+
+    def __init__(self, study, count):
+        answer, unstable = study.get("response/answer"), study.get("response/unstable_count")
+        self.answer = np.ones(count, bool) if answer is None else np.asarray(answer) > 0
+        self.stable = np.ones(count, bool) if unstable is None else np.asarray(unstable) == 0
+
+    def plot(self, axis, x, y, **look):
+        """A line with gaps where the response is no answer, dashed about equilibria that are not known to be stable."""
+        y = np.where(self.answer, y, np.nan)
+        for start, stop in runs(list(self.stable)):
+            # Stretches meet: the line between a stable and an unstable speed belongs to the unstable one.
+            low = max(0, start - 1) if not self.stable[start] else start
+            high = min(len(x), stop + 1) if not self.stable[start] else stop
+            axis.plot(x[low:high], y[low:high], **{**look, **({} if self.stable[start] else {"linestyle": DASHED, "label": "_"})})
+
+    def shade(self, axis, x):
+        for start, stop in runs(list(self.stable)):
+            if not self.stable[start]:
+                axis.axvspan(x[max(0, start - 1)], x[stop - 1], color=BAD, alpha=0.06, linewidth=0)
+
+
+def draw_lag(axis, x, phase, colour, validity):
     """Lag in degrees within one turn: the unwrapped curve and its copies a turn away, as far as they are inside."""
     lag = -np.degrees(np.unwrap(phase))
     for turn in range(int(np.floor(lag.min() / 360)), int(np.floor(lag.max() / 360)) + 1):
-        axis.plot(x, lag - 360 * turn, color=colour, linewidth=1.2)
+        validity.plot(axis, x, lag - 360 * turn, color=colour, linewidth=1.2)
     axis.set_ylim(360, 0)
     axis.set_yticks(range(0, 361, 90))
 
 
-def draw_place(amplitude_axis, phase_axis, x, data, k, scale, unit, speed_unit, title):
-    major = data["semi_major"][:, k] * scale
-    amplitude_axis.plot(x, major, color=INK, linewidth=1.8, label="semi-major axis")
-    amplitude_axis.plot(x, data["y_amplitude"][:, k] * scale, color=Y, linewidth=1.2, label="y, vertical")
-    amplitude_axis.plot(x, data["x_amplitude"][:, k] * scale, color=X, linewidth=1.2, label="x, horizontal")
-    known = peaks(x, major)
+def draw_place(study, amplitude_axis, phase_axis, x, data, k, scale, unit, speed_unit, place, validity):
+    major = np.where(validity.answer, data["semi_major"][:, k] * scale, np.nan)
+    validity.plot(amplitude_axis, x, major, color=INK, linewidth=1.8, label="semi-major axis")
+    validity.plot(amplitude_axis, x, data["y_amplitude"][:, k] * scale, color=Y, linewidth=1.2, label="y, vertical")
+    validity.plot(amplitude_axis, x, data["x_amplitude"][:, k] * scale, color=X, linewidth=1.2, label="x, horizontal")
+    title = place
+    known = [(number(p, "semi_major"), p) for p in peaks_at(study, place) if number(p, "speed") is not None and number(p, "semi_major") is not None]
+    for top, p in known:
+        if is_answer(p):
+            amplitude_axis.plot(number(p, "speed"), top * scale, "o", color=INK, markersize=3)
     if known:
-        at, top, factor = max(known, key=lambda p: p[1])
-        amplitude_axis.plot(at, top, "o", color=INK, markersize=4.5)
+        # Peaks that are no motion are named only where there is no other.
+        top, p = max(known, key=lambda entry: (is_answer(entry[1]), entry[0]))
+        factor = number(p, "amplification_factor")
         # Above the axes it covers nothing.
-        title += f"\n{top:.3g} {unit} at {at:.0f} {speed_unit}" + (f", AF {factor:.1f}" if factor else "")
-    amplitude_axis.set_ylim(0, 1.08 * max(major.max(), 1e-300))
+        title += f"\n{top * scale:.3g} {unit} at {number(p, 'speed'):.0f} {speed_unit}" + (f", AF {factor:.1f}" if factor is not None else "")
+        if not is_answer(p):
+            title += ", unstable" if p.get("stability") == "unstable" else ", no answer" if p.get("stability", "stable") == "stable" else ", undetermined"
+    highest = np.nanmax(major) if np.isfinite(major).any() else 0
+    amplitude_axis.set_ylim(0, 1.08 * max(highest, 1e-300))
     amplitude_axis.set_title(title, fontsize=9)
-    draw_lag(phase_axis, x, data["x_phase"][:, k], X)
-    draw_lag(phase_axis, x, data["y_phase"][:, k], Y)
+    draw_lag(phase_axis, x, data["x_phase"][:, k], X, validity)
+    draw_lag(phase_axis, x, data["y_phase"][:, k], Y, validity)
+
+
+def operating_in(study):
+    """Lowest and highest operating speed in the unit of the study; None if it had none."""
+    values = study.values
+    for low, high in (("operating_speed",) * 2, ("operating_range.from", "operating_range.to")):
+        if low in values and high in values and values[low].value is not None and values[high].value is not None:
+            return values[low].value, values[high].value
+    return None
+
+
+def draw_operating(axis, operating, x):
+    """A line at the operating speed, a band over a range of them."""
+    if operating is None:
+        return
+    low, high = operating
+    if low == high and x[0] <= low <= x[-1]:
+        axis.axvline(low, color=GREY, linewidth=1.0, linestyle=":")
+    elif low != high:
+        axis.axvspan(max(low, x[0]), min(high, x[-1]), color=GREY, alpha=0.15, linewidth=0)
 
 
 def draw_group(study, group, names, what, speed, speed_label):
@@ -66,22 +111,27 @@ def draw_group(study, group, names, what, speed, speed_label):
     data = {k: study.get(f"{group}/{k}").reshape(len(speed), -1) for k in keys}
     scale, unit = length_unit(data["semi_major"])
     files, count = [], data["semi_major"].shape[1]
-    operating = study.values.get("operating_speed")
-    for number, part in enumerate(np.array_split(np.arange(count), -(-count // 5)), 1):
+    operating, validity = operating_in(study), Validity(study, len(speed))
+    for count_of_files, part in enumerate(np.array_split(np.arange(count), -(-count // 5)), 1):
         figure, axes = plt.subplots(2, len(part), figsize=(max(7.2, 2.7 * len(part)), 6.0), sharex=True,
                                     sharey="row" if group == "bearings" else False, height_ratios=[1.5, 1], squeeze=False)
         for column, k in enumerate(part):
-            draw_place(axes[0, column], axes[1, column], speed, data, k, scale, unit, speed_label.split("[")[1].rstrip("]"), names[k])
+            draw_place(study, axes[0, column], axes[1, column], speed, data, k, scale, unit, speed_label.split("[")[1].rstrip("]"), names[k], validity)
             axes[1, column].set_xlabel(speed_label)
             axes[1, column].set_xlim(speed[0], speed[-1])
-        if operating is not None and operating.value is not None:
-            for axis in axes.ravel():
-                axis.axvline(operating.value, color=INK, linewidth=0.7, linestyle=":")
-        if group == "bearings":
-            axes[0, 0].set_ylim(0, 1.08 * scale * data["semi_major"][:, list(part)].max())
+        for axis in axes.ravel():
+            draw_operating(axis, operating, speed)
+            validity.shade(axis, speed)
+        if group == "bearings" and validity.answer.any():
+            axes[0, 0].set_ylim(0, 1.08 * scale * data["semi_major"][validity.answer][:, list(part)].max())
+        handles = [Line2D([], [], color=c, linewidth=w, label=words) for c, w, words in ((INK, 1.8, "semi-major axis"), (Y, 1.2, "y, vertical"), (X, 1.2, "x, horizontal"))]
+        if not validity.stable.all():
+            handles += [Line2D([], [], color=INK, linestyle=DASHED, label="no stable equilibrium: no vibration settles there"), Patch(color=BAD, alpha=0.12, label="unstable")]
+        if operating is not None:
+            handles.append(Line2D([], [], color=GREY, linestyle=":", label="operating speed") if operating[0] == operating[1] else Patch(color=GREY, alpha=0.25, label="operating speeds"))
         axes[0, 0].set_ylabel(f"amplitude, 0-peak [{unit}]")
         axes[1, 0].set_ylabel("lag [deg]")
-        files += save(figure, study, what if count <= 5 else f"{what}{number}", NOTE, axes[0, 0].get_legend_handles_labels()[0])
+        files += save(figure, study, what if count <= 5 else f"{what}{count_of_files}", NOTE, handles)
     return files
 
 

@@ -8,7 +8,7 @@ from . import sweep_tables
 from .bifurcation import Followed
 from .locus import WORDS as LOCUS_WORDS
 from .margins import MARGIN_HEAD, MARGIN_NOTE, margins, operating_range, range_in, told, told_margins
-from .response import peaks
+from .response import number, operating_in, peaks_at
 from .style import speed_axis
 from .units import WORDS, digits, person, quantity, scale_of, with_bar
 
@@ -113,58 +113,41 @@ def modes(study):
     return out
 
 
-def peaks_told(study, name, head):
-    """Rows of the peaks of a node, the four largest, with their bars."""
-    values, rows = study.values, []
-    numbers = [k for k in range(1, 100) if f"{head}{k}.semi_major" in values]
-    for n, k in enumerate(sorted(numbers, key=lambda k: -(values[f"{head}{k}.semi_major"].value or 0))[:4]):
-        at = f"{head}{k}."
-        size = values[at + "semi_major"]
-        rows.append([name if n == 0 else "", told(study, at + "speed"),
-                     with_bar(None if size.value is None else size.value * 1e6, None if size.uncertainty is None else size.uncertainty * 1e6),
-                     told(study, at + "amplification_factor"), *told_or_computed(study, at)])
-    return rows
+def cell(peak, name, factor=1):
+    """A value of a peak with its bar; a dash where there is none."""
+    size, bar = number(peak, name), (peak.get(name) or {}).get("uncertainty")
+    return with_bar(None if size is None else size * factor, bar * factor if isinstance(bar, (int, float)) else None)
 
 
-def told_or_computed(study, at):
-    """Margins of summary.json; where the study had no operating speed those from the service speed of the deck's unbalance."""
-    operating = operating_range(study)
-    if operating is None or at + "separation_margin" in study.values:
-        return told_margins(study, at) if operating else []
-    factor, speed = study.values.get(at + "amplification_factor"), study.values[at + "speed"]
-    if speed.value is None:
-        return ["\u2013"] * 3
-    to_unit = speed_axis(study.attribute("speed_unit", "rad/s"))[0]
-    return margins(speed.value / to_unit, None if factor is None else factor.value, operating)
+# The words of the list of peaks in the column that asks whether the margin is enough.
+ENOUGH = {"too near": "no", "far enough": "yes", "damped, not critical": "damped", "undetermined": "undetermined"}
+
+
+def peak_row(peak, operating):
+    required = number(peak, "required_margin")
+    margin = [cell(peak, "separation_margin", 100), "none" if required == 0 else cell(peak, "required_margin", 100), ENOUGH.get(peak.get("verdict"), "\u2013")]
+    return [cell(peak, "speed"), cell(peak, "semi_major", 1e6), cell(peak, "amplification_factor"), *(margin if operating else []),
+            str(peak.get("stability", "\u2013")), "; ".join(str(n) for n in peak.get("notes", []))]
 
 
 def unbalance_response(study):
     if not study.has("response/speed"):
         return []
     unit = study.attribute("speed_unit", "rad/s")
-    factor_of_speed = speed_axis(unit)[0]
-    speed, operating = study.get("response/speed"), operating_range(study)
-    rows = []
-    places = [("response", f"node {n}", k) for k, n in enumerate(np.atleast_1d(study.get("response/node", [])))]
-    if study.has("bearings/semi_major"):
-        count = study.get("bearings/semi_major").reshape(len(speed), -1).shape[1]
-        places += [("bearings", f"{n}, journal", k) for k, n in enumerate(study.bearings(count))]
-    for group, name, k in places:
-        head = f"{name.replace(' ', '.')}.peak."
-        if group == "response" and head + "1.speed" in study.values:
-            rows += peaks_told(study, name, head)
-            continue
-        major = study.get(f"{group}/semi_major").reshape(len(speed), -1)[:, k]
-        for n, (at, top, factor) in enumerate(sorted(peaks(speed, major), key=lambda p: -p[1])[:4]):
-            rows.append([name if n == 0 else "", digits(float(at * factor_of_speed), 5), digits(float(top * 1e6), 4),
-                         "\u2013" if factor is None else digits(float(factor), 3), *margins(at, factor, operating)])
-    head = ["probe", f"peak at [{unit}]", "amplitude [\u00b5m]", "amplification"] + (MARGIN_HEAD if operating else [])
-    note = "0-peak, semi-major axis of the orbit; amplification N/(N2 \u2212 N1) at 0.707 of the peak (API 684), none where the curve does not come down so far"
-    out = [Table("Peaks of the response, the four largest of each probe", head, rows, f"{note}; {MARGIN_NOTE}" if operating else note)] if rows else []
+    operating, rows = operating_in(study), []
+    for place in dict.fromkeys(str(p.get("place")) for p in study.peaks):
+        rows += [[place if n == 0 else "", *peak_row(p, operating)] for n, p in enumerate(peaks_at(study, place)[:4])]
+    margins_head = ["margin [%]", "required [%]", "enough"] if operating else []
+    head = ["probe", f"peak at [{unit}]", "amplitude [\u00b5m]", "amplification", *margins_head, "equilibrium", ""]
+    if rows and not any(r[-1] for r in rows):
+        head, rows = head[:-1], [r[:-1] for r in rows]
+    note = "0-peak, semi-major axis of the orbit; amplification N/(N2 \u2212 N1) at 0.707 of the peak (API 684); a response about an unstable equilibrium is no motion"
+    shown = f"; operating speed {' to '.join(digits(v, 5) for v in dict.fromkeys(operating))} {unit}; {MARGIN_NOTE}" if operating else ""
+    out = [Table("Peaks of the response, the four largest of each probe", head, rows, note + shown)] if rows else []
     at = {k.removeprefix("operating."): v for k, v in study.values.items() if k.startswith("operating.")}
     if at:
         words = {k: k.replace("node.", "node ").replace("bearing.", "").replace(".semi_major", "").replace(".", ", ") for k in at}
-        out.append(Table("At the operating speed" + (f", {digits(operating[0] * factor_of_speed, 5)} {unit}" if operating and operating[0] == operating[1] else ""),
+        out.append(Table("At the operating speed" + (f", {digits(operating[0], 5)} {unit}" if operating and operating[0] == operating[1] else ""),
                          ["place", "amplitude 0-peak"], [[words[k], person(v.value, v.unit, 4)] for k, v in at.items()]))
     return out
 

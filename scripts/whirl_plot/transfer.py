@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import COLOURS, INK, ROTATION, save, speed_axis
+from .style import COLOURS, DASHED, INK, ROTATION, save, speed_axis
 
 LINES = ("-", (0, (4, 2)), (0, (1.2, 1.4)), (0, (7, 1.6, 1.2, 1.6)))
 
@@ -28,6 +28,7 @@ def draw(study):
     factor, _, _, _ = speed_axis(study.attribute("frequency_unit", "rad/s"))
     unit = study.attribute("frequency_unit", "rad/s")
     frequency = response["frequency"][()] * factor
+    unstable = study.summary.get("stability") == "unstable"
     ways, pairs = list(ways_of(response)), list(response["machine"])
     outputs = list(dict.fromkeys(p.split(".from.")[0] for p in pairs))
     inputs = list(dict.fromkeys(p.split(".from.")[1] for p in pairs))
@@ -44,6 +45,8 @@ def draw(study):
                     continue
                 width = 1.6 if way == "machine" else 1.2
                 look = {"color": colour, "linestyle": line, "linewidth": width}
+                if way == "machine" and unstable:
+                    look["linestyle"] = DASHED
                 if way == "coefficients":  # the same curve: points on it
                     look = {"color": colour, "linestyle": "none", "marker": ".", "markersize": 5, "markevery": max(1, len(frequency) // 40)}
                 top.plot(frequency, amplitude, **look)
@@ -60,7 +63,7 @@ def draw(study):
         bottom.set_yticks(range(-180, 181, 90))
         bottom.set_ylim(-190, 190)
         bottom.set_xlabel(f"frequency [{unit}]")
-        top.set_title(f"{output} per unit of input")
+        top.set_title(f"{output} per unit of input" + (", about an unstable equilibrium" if unstable else ""))
         handles = [Line2D([], [], color=c, label=f"from {i}") for c, i in zip(COLOURS * len(inputs), inputs)]
         if len(ways) > 1:
             handles += [Line2D([], [], color=INK, linestyle="none" if way == "coefficients" else line, marker="." if way == "coefficients" else None, label=words)

@@ -49,7 +49,7 @@ std::string changes_text(const std::vector<deck::Change>& changes) {
 
 }  // namespace
 
-core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
+core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   const study::Deck deck = study::load(comm, request.deck.path, request.deck.overrides);
   if (deck.studies.empty()) refuse(fmt::format("{}: the deck asks for no study (`studies: [...]`)", request.deck.path));
   if (request.resume && request.force)
@@ -61,9 +61,17 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   for (const auto& s : deck.studies)
     for (const char* kind : {".checkpoint.h5", ".xdmf"}) files.push_back(io::safe_name(s->name()) + kind);
   Directory held(comm, directory, study::resolved_text(deck), earlier, files);
-  study::RunOptions options{directory, WHIRL_VERSION, {}, request.resume};
+  study::RunOptions options{directory, WHIRL_VERSION, {}, {}, request.resume};
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
+  options.ended = [&](const io::StudySummary& s) {
+    if (request.progress) fmt::print(stderr, "\r\033[K");
+    print(outcome_text(s));
+  };
+  std::string text = changes_text(deck.changes);
+  for (const std::string& line : study::unusual(deck)) text += fmt::format("warning: {}\n", line);
+  print(text);
+  text.clear();
   std::vector<std::string> undelivered;
   try {
     undelivered = study::run(comm, deck, options);
@@ -71,9 +79,8 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
     held.abandon();
     throw;
   }
-  text += changes_text(deck.changes);
   core::agree(comm, [&] {
-    if (core::rank_of(comm) == 0) text += outcome_text(io::Summary::read(fs::path(directory) / "summary.json"));
+    if (core::rank_of(comm) == 0) text += service_text(io::Summary::read(fs::path(directory) / "summary.json").service);
   });
   for (const auto& o : core::Session::options_in_force())
     if (o.source != "command line")
@@ -83,7 +90,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
     text += fmt::format("nothing has asked for the PETSc option {}\n", option);
   if (core::rank_of(comm) == 0 && !held.locked())
     text += fmt::format("'{}' cannot be locked: nothing would have kept a second run out\n", directory);
-  text += fmt::format("results in {}\n", directory);
+  print(text + fmt::format("results in {}\n", directory));
   return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }
 

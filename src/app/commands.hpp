@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ struct RunRequest {
   bool progress = false;
 };
 
-/// Computes a deck; `text` is what to tell the user at the end. Collective. Nothing is written if the deck is wrong.
-[[nodiscard]] core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text);
+/// Shows a text at once.
+using Print = std::function<void(const std::string& text)>;
+/// Computes a deck and tells of each study as soon as it ends. Collective. Nothing is written if the deck is wrong.
+[[nodiscard]] core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print);
 [[nodiscard]] std::string check(MPI_Comm comm, const DeckRequest& request);
 [[nodiscard]] std::string list();
 [[nodiscard]] std::string describe(const std::string& key);

@@ -1,13 +1,14 @@
 #include "highlights.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <vector>
 
 namespace whirl::app {
@@ -190,35 +191,38 @@ std::string of_modes(const io::StudySummary& s, const Values& v) {
   return grid.text();
 }
 
-std::string of_response(const io::StudySummary& s, const Values& v) {
+// The bar with two digits, the value as far as it reaches; "-" if there is none.
+std::string cell_of(const io::Quantity& q, double factor = 1) {
+  if (!std::isfinite(q.value)) return "-";
+  const auto bar = q.more.find("uncertainty");
+  const double error = bar == q.more.end() ? io::no_value : factor * bar->second;
+  return std::isfinite(error) && error > 0 ? with_uncertainty(factor * q.value, error, "") : number(factor * q.value);
+}
+
+// Peaks of the shaft; those of the journals stand in the report. A grid for each place.
+std::string of_response(const io::StudySummary& s) {
   std::string out;
-  std::set<std::string> seen;
-  for (const std::string& name : Values::between(s, "node.", ".semi_major")) {
-    const std::string node = name.substr(0, name.find('.'));
-    if (!seen.insert(node).second) continue;
-    const auto peaks = Values::between(s, "node." + node + ".peak.", ".speed");
-    const std::string unit = v.unit("node." + node + ".peak.1.speed");
-    Grid grid(
-        {"peak at node " + node, "[" + unit + "]", "0-peak [um]", "amplification", "margin [%]", "required [%]", ""});
-    for (const std::string& k : peaks) {
-      const std::string head = "node." + node + ".peak." + k + ".";
-      const auto margin = v.get(head + "separation_margin"), required = v.get(head + "required_margin"),
-                 factor = v.get(head + "amplification_factor");
-      // A bar that contains the limit decides nothing.
-      const auto bar_of = [&](const char* which) {
-        return std::isfinite(v.bar(head + which)) ? v.bar(head + which) : 0.0;
-      };
-      const double bars = bar_of("separation_margin") + bar_of("required_margin");
-      const double missing = margin && required ? *required - *margin : io::no_value;
-      std::string verdict = damped_verdict(factor, v.bar(head + "amplification_factor"));
-      const bool damped = verdict.starts_with("damped");
-      if (verdict.empty() && missing != 0 && std::abs(missing) <= bars)
-        verdict = "undetermined";
-      else if (verdict.empty() && missing > 0)
-        verdict = "TOO NEAR";
-      grid.add({k, v.cell(head + "speed"), v.cell(head + "semi_major", 1e6), v.cell(head + "amplification_factor"),
-                v.cell(head + "separation_margin", 100), damped ? "-" : v.cell(head + "required_margin", 100),
-                verdict});
+  std::vector<std::string> places;
+  for (const io::PeakEntry& p : s.peaks)
+    if (p.place.starts_with("node ") && std::find(places.begin(), places.end(), p.place) == places.end())
+      places.push_back(p.place);
+  for (const std::string& place : places) {
+    std::vector<io::PeakEntry> own;
+    std::copy_if(s.peaks.begin(), s.peaks.end(), std::back_inserter(own),
+                 [&](const io::PeakEntry& p) { return p.place == place; });
+    Grid grid({"peak at " + place, "[" + own.front().speed.unit + "]", "0-peak [um]", "amplification", "margin [%]",
+               "required [%]", ""});
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const io::PeakEntry& p = own[k];
+      std::vector<std::string> marks = p.notes;
+      const bool damped = p.verdict.starts_with("damped");
+      if (!p.verdict.empty() && p.verdict != "far enough")
+        marks.insert(marks.begin(), p.verdict == "too near" ? "TOO NEAR" : p.verdict);
+      if (!p.stability.empty() && p.stability != "stable")
+        marks.insert(marks.begin(), p.stability == "unstable" ? "UNSTABLE there" : "stability undetermined");
+      grid.add({fmt::format("{}", k + 1), cell_of(p.speed), cell_of(p.semi_major, 1e6), cell_of(p.amplification_factor),
+                cell_of(p.separation_margin, 100), damped ? "-" : cell_of(p.required_margin, 100),
+                fmt::format("{}", fmt::join(marks, "; "))});
     }
     out += grid.text();
   }
@@ -421,12 +425,27 @@ std::string with_uncertainty(double value, double uncertainty, const std::string
   return fmt::format("{:.{}f} +- {:.{}f}{}", value, decimals, uncertainty, decimals, tail);
 }
 
+std::string in_usual_unit(const io::Quantity& q) {
+  const auto bar = q.more.find("uncertainty");
+  const auto shown = [&](double value, double factor, const std::string& unit) {
+    const io::Quantity there{factor * value, unit,
+                             bar == q.more.end()
+                                 ? std::map<std::string, double>{}
+                                 : std::map<std::string, double>{{"uncertainty", factor * bar->second}}};
+    return cell_of(there) + (unit.empty() ? "" : " " + unit);
+  };
+  if (q.unit == "m") return std::abs(q.value) < 0.01 ? shown(q.value, 1e6, "um") : shown(q.value, 1e3, "mm");
+  if (q.unit == "Pa") return shown(q.value, 1e-6, "MPa");
+  if (q.unit == "K") return shown(q.value - 273.15, 1, "degC");
+  return shown(q.value, 1, q.unit == "1" ? "" : q.unit);
+}
+
 std::string highlights(const io::StudySummary& s) {
   const Values v(s);
   if (s.kind == "static") return of_static(s, v);
   if (s.kind == "alignment") return of_alignment(s, v);
   if (s.kind == "modes") return of_modes(s, v);
-  if (s.kind == "unbalance_response") return of_response(s, v);
+  if (s.kind == "unbalance_response") return of_response(s);
   if (s.kind == "equilibrium_branch") return of_equilibria(s, v);
   if (s.kind == "cycle_branch") return of_cycles(s, v);
   if (s.kind == "run_up") return of_run_up(s, v);

@@ -16,4 +16,7 @@ namespace whirl::app {
 /// "5021.4 +- 6.9 rpm": two digits of the uncertainty, seven of the value at most; the unit 1 is not written.
 [[nodiscard]] std::string with_uncertainty(double value, double uncertainty, const std::string& unit);
 
+/// A value with its bar in the unit that a person reads: "23.2 +- 0.4 um", "61.3 degC".
+[[nodiscard]] std::string in_usual_unit(const io::Quantity& q);
+
 }  // namespace whirl::app

@@ -143,12 +143,17 @@ core::Exit dispatch(CommandLine line, bool prints) {
   }
   std::string text;
   core::Exit exit = core::Exit::success;
-  if (*run_command) exit = app::run(MPI_COMM_WORLD, run, text);
+  const auto print = [prints](const std::string& part) {
+    if (!prints) return;
+    (void)std::fputs(part.c_str(), stdout);
+    (void)std::fflush(stdout);  // a file shows at once what a study of an hour has found
+  };
+  if (*run_command) exit = app::run(MPI_COMM_WORLD, run, print);
   if (*check_command) text = app::check(MPI_COMM_WORLD, check);
   if (*list_command) text = app::list();
   if (*describe_command) text = app::describe(key);
   if (*schema_command) text = app::schema();
-  if (prints) (void)std::fputs(text.c_str(), stdout);
+  print(text);
   return exit;
 }
 

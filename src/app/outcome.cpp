@@ -1,12 +1,15 @@
 #include "outcome.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
+#include <vector>
 
 #include "highlights.hpp"
 
 namespace whirl::app {
+
 namespace {
 
 // ": stable 600 to 4471 rpm, unstable to 5200 rpm"; nothing of a single stretch.
@@ -23,7 +26,9 @@ std::string in_words(const std::vector<io::StabilityRange>& ranges) {
   return ranges.size() > 1 && ranges[0].unit != "1" ? text + " " + ranges[0].unit : text;
 }
 
-std::string text_of(const io::StudySummary& s) {
+}  // namespace
+
+std::string outcome_text(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
   if (!s.layout.empty()) text += fmt::format("  {}\n", s.layout);
@@ -48,11 +53,17 @@ std::string text_of(const io::StudySummary& s) {
   return text + highlights(s);
 }
 
-}  // namespace
-
-std::string outcome_text(const io::Summary& summary) {
-  std::string text;
-  for (const io::StudySummary& s : summary.studies) text += text_of(s);
+std::string service_text(const io::Service& service) {
+  if (service.speed.unit.empty()) return {};
+  std::string text = fmt::format("at the service speed, {:.6g} {}:\n", service.speed.value, service.speed.unit);
+  for (const io::ServiceFact& f : service.facts) {
+    std::vector<std::string> words;
+    if (std::isfinite(f.value.value)) words.push_back(in_usual_unit(f.value));
+    if (!f.place.empty()) words.push_back("at " + f.place);
+    std::string line = fmt::format("{}", fmt::join(words, " "));
+    if (!f.mark.empty()) line += (line.empty() ? "" : ", ") + f.mark;
+    text += fmt::format("  {}: {}{}\n", f.what, line, f.study.empty() ? "" : " (" + f.study + ")");
+  }
   return text;
 }
 

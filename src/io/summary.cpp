@@ -119,6 +119,76 @@ CodimensionTwo codimension_two(Json j) {
   return c;
 }
 
+Json to_json(const Quantity& q) {
+  Json j = {{"value", number(q.value)}, {"unit", q.unit}};
+  for (const auto& [key, value] : q.more) j[key] = number(value);
+  return j;
+}
+
+Quantity quantity(const Json& j) {
+  return {number(j.at("value")), j.at("unit"), others(j, {"value", "unit"})};
+}
+
+// The quantities of a peak, by name.
+using PeakQuantity = std::pair<const char*, Quantity PeakEntry::*>;
+constexpr std::array<PeakQuantity, 5> peak_quantities = {
+    PeakQuantity{"speed", &PeakEntry::speed}, PeakQuantity{"semi_major", &PeakEntry::semi_major},
+    PeakQuantity{"amplification_factor", &PeakEntry::amplification_factor},
+    PeakQuantity{"separation_margin", &PeakEntry::separation_margin},
+    PeakQuantity{"required_margin", &PeakEntry::required_margin}};
+
+Json to_json(const PeakEntry& p) {
+  Json j = {{"place", p.place}};
+  for (const auto& [name, which] : peak_quantities)
+    if (!(p.*which).unit.empty()) j[name] = to_json(p.*which);
+  if (!p.stability.empty()) j["stability"] = p.stability;
+  if (!p.verdict.empty()) j["verdict"] = p.verdict;
+  if (!p.notes.empty()) j["notes"] = p.notes;
+  return j;
+}
+
+PeakEntry peak(const Json& j) {
+  PeakEntry p;
+  p.place = j.at("place");
+  for (const auto& [name, which] : peak_quantities)
+    if (j.contains(name)) p.*which = quantity(j.at(name));
+  p.stability = j.value("stability", std::string());
+  p.verdict = j.value("verdict", std::string());
+  p.notes = j.value("notes", std::vector<std::string>());
+  return p;
+}
+
+Json to_json(const Service& s) {
+  Json facts = Json::array();
+  for (const ServiceFact& f : s.facts) {
+    Json j = {{"what", f.what}};
+    if (!f.place.empty()) j["place"] = f.place;
+    if (!f.value.unit.empty()) j.update(to_json(f.value));
+    if (!f.mark.empty()) j["mark"] = f.mark;
+    j["study"] = text_or_null(f.study);
+    facts.push_back(std::move(j));
+  }
+  Json j = to_json(s.speed);
+  j["facts"] = std::move(facts);
+  return j;
+}
+
+Service service(const Json& j) {
+  Service s;
+  s.speed = {number(j.at("value")), j.at("unit")};
+  for (const Json& f : j.at("facts")) {
+    ServiceFact& fact = s.facts.emplace_back();
+    fact.what = f.at("what");
+    fact.place = f.value("place", std::string());
+    if (f.contains("value"))
+      fact.value = {number(f.at("value")), f.at("unit"),
+                    others(f, {"what", "place", "value", "unit", "mark", "study"})};
+    fact.mark = f.value("mark", std::string());
+    fact.study = f.at("study").is_null() ? "" : f.at("study").get<std::string>();
+  }
+  return s;
+}
+
 Json numbers(const std::vector<double>& all) {
   Json j = Json::array();
   for (const double x : all) j.push_back(number(x));
@@ -174,10 +244,7 @@ void take_sweep(const Json& j, StudySummary& s) {
 
 Json to_json(const StudySummary& s) {
   Json values = Json::object();
-  for (const auto& [name, q] : s.values) {
-    values[name] = {{"value", number(q.value)}, {"unit", q.unit}};
-    for (const auto& [key, value] : q.more) values[name][key] = number(value);
-  }
+  for (const auto& [name, q] : s.values) values[name] = to_json(q);
   Json bifurcations = Json::array(), modes = Json::array();
   for (const Bifurcation& b : s.bifurcations) bifurcations.push_back(to_json(b));
   for (const ModeEntry& m : s.modes) {
@@ -205,6 +272,7 @@ Json to_json(const StudySummary& s) {
     j["ranges"].push_back(
         {{"from", number(r.from)}, {"to", number(r.to)}, {"unit", r.unit}, {"stability", r.stability}});
   if (!s.warnings.empty()) j["warnings"] = s.warnings;
+  for (const PeakEntry& p : s.peaks) j["peaks"].push_back(to_json(p));
   for (const Column& c : s.curve) {
     Json column = Json::array();
     for (const double v : c.values) column.push_back(number(v));
@@ -223,8 +291,7 @@ StudySummary study(const Json& j) {
   s.kind = j.at("kind");
   s.status = j.at("status");
   s.wall_seconds = number(j.at("wall_seconds"));
-  for (const auto& [name, q] : j.at("values").items())
-    s.set(name, number(q.at("value")), q.at("unit"), others(q, {"value", "unit"}));
+  for (const auto& [name, q] : j.at("values").items()) s.values.emplace_back(name, quantity(q));
   for (const Json& b : j.at("bifurcations")) s.bifurcations.push_back(bifurcation(b));
   for (const Json& c : j.value("codimension_two", Json::array())) s.codimension_two.push_back(codimension_two(c));
   for (const Json& x : j.value("suspected", Json::array()))
@@ -240,6 +307,7 @@ StudySummary study(const Json& j) {
   for (const Json& r : j.value("ranges", Json::array()))
     s.ranges.push_back({number(r.at("from")), number(r.at("to")), r.at("unit"), r.at("stability")});
   s.warnings = j.value("warnings", std::vector<std::string>());
+  for (const Json& p : j.value("peaks", Json::array())) s.peaks.push_back(peak(p));
   const Json curve = j.value("curve", Json::object());
   for (const auto& [name, c] : curve.items()) {
     Column column{name, c.at("unit"), {}};
@@ -282,12 +350,14 @@ std::string Summary::to_json() const {
   Json given = Json::array();
   for (const LibraryOption& o : options)
     given.push_back({{"name", o.name}, {"value", o.value}, {"source", text_or_null(o.source)}});
-  const Json j = {{"title", title},
-                  {"version", version},
-                  {"ranks", ranks},
-                  {"wall_seconds", number(wall_seconds)},
-                  {"options", std::move(given)},
-                  {"studies", std::move(list)}};
+  Json j = {{"title", title},
+            {"version", version},
+            {"ranks", ranks},
+            {"wall_seconds", number(wall_seconds)},
+            {"options", std::move(given)}};
+  if (!warnings.empty()) j["warnings"] = warnings;
+  if (!service.speed.unit.empty()) j["service_speed"] = io::to_json(service);
+  j["studies"] = std::move(list);
   // Texts come from users' decks; a byte that is not UTF-8 must not cost the results.
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -307,6 +377,8 @@ Summary Summary::from_json(const std::string& text) {
     for (const Json& o : j.value("options", Json::array()))
       s.options.push_back(
           {o.at("name"), o.at("value"), o.at("source").is_null() ? "" : o.at("source").get<std::string>()});
+    s.warnings = j.value("warnings", std::vector<std::string>());
+    if (j.contains("service_speed")) s.service = io::service(j.at("service_speed"));
     for (const Json& one : j.at("studies")) s.studies.push_back(study(one));
     return s;
   } catch (const Json::exception& e) {

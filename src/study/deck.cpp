@@ -7,6 +7,7 @@
 
 #include "cost.hpp"
 #include "premises.hpp"
+#include "sense.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/film/describe.hpp"
@@ -134,9 +135,14 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
   return d;
 }
 
+std::vector<std::string> unusual(const Deck& d) {
+  return unusual_lubricants(d.machine);
+}
+
 std::vector<std::string> warnings(const Deck& d) {
-  std::vector<std::string> all = rotor::advice(d.machine.rotor);
+  std::vector<std::string> all = unusual(d);
   const auto add = [&all](std::vector<std::string> lines) { all.insert(all.end(), lines.begin(), lines.end()); };
+  add(rotor::advice(d.machine.rotor));
   add(unbalance_warnings(d.machine));
   for (const auto& s : d.studies) add(table_warnings(d.machine, *s));
   const std::vector<std::string> own = all;

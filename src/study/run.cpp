@@ -61,7 +61,7 @@ void run_studies(MPI_Comm comm, const Deck& deck, const Say& say, bool resume, S
 }
 
 std::vector<std::string> run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
-  Writer writer(comm, options.directory, deck.machine.title, options.version, options.resume);
+  Writer writer(comm, deck, options);
   run_studies(comm, deck, options.say, options.resume, writer);
   return writer.undelivered();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "service.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/core/session.hpp"
@@ -33,15 +34,17 @@ void put_options(io::Group& root, const std::vector<io::LibraryOption>& options)
 
 }  // namespace
 
-Writer::Writer(MPI_Comm comm, fs::path directory, const std::string& title, const std::string& version, bool resume)
+Writer::Writer(MPI_Comm comm, const Deck& deck, const RunOptions& options)
     : comm_(comm),
       rank_(core::rank_of(comm)),
-      directory_(std::move(directory)),
+      directory_(options.directory),
       manifest_(directory_),
-      started_(std::chrono::steady_clock::now()) {
+      started_(std::chrono::steady_clock::now()),
+      ended_(options.ended),
+      service_speed_(deck.machine.service_speed) {
   core::agree(comm_, [&] {
     // Every rank reads the same files, of arrays that were shared its rows. They are written together.
-    if (!resume || !fs::exists(directory_ / "summary.json")) return;
+    if (!options.resume || !fs::exists(directory_ / "summary.json")) return;
     all_ = io::Summary::read(directory_ / "summary.json");
     earlier_seconds_ = all_.wall_seconds;
     if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5", comm_);
@@ -56,14 +59,16 @@ Writer::Writer(MPI_Comm comm, fs::path directory, const std::string& title, cons
       if (rank_ == 0) io::Checkpoint(directory_ / (name + ".checkpoint.h5")).remove();
     }
   });
-  io::describe_results(root_, title, version);
+  io::describe_results(root_, deck.machine.title, options.version);
   root_.child("studies");
-  all_.title = title;
-  all_.version = version;
+  all_.title = deck.machine.title;
+  all_.version = options.version;
+  all_.warnings = unusual(deck);
   all_.ranks = core::size_of(comm);
   all_.options.clear();
   for (const auto& o : core::Session::options_in_force()) all_.options.push_back({o.name, o.value, o.source});
   put_options(root_, all_.options);
+  for (const std::string& name : finished_) tell(name);
 }
 
 bool Writer::finished(const std::string& name) const {
@@ -104,11 +109,19 @@ void Writer::add(StudyResult result) {
     io::Checkpoint(directory_ / (file + ".checkpoint.h5")).remove();
     for (const auto& part : result.checkpoints) io::Checkpoint(part).remove();
   });
+  tell(name);
+}
+
+void Writer::tell(const std::string& name) const {
+  if (rank_ != 0 || !ended_) return;
+  for (const io::StudySummary& s : all_.studies)
+    if (s.name == name) ended_(s);
 }
 
 void Writer::write() {
   all_.wall_seconds =
       earlier_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  if (service_speed_) all_.service = service_of(*service_speed_, all_.studies, studies());
   fs::path results;
   core::agree(comm_, [&] { results = file("results.h5"); });
   io::write_hdf5(results, root_, comm_);

@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +21,8 @@ namespace whirl::study {
 /// share; all ranks of `comm` write these, and rank 0 all else.
 class Writer final : public Store {
 public:
-  /// `resume` takes over what an earlier run left in the directory.
-  Writer(MPI_Comm comm, std::filesystem::path directory, const std::string& title, const std::string& version,
-         bool resume);
+  /// To resume takes over what an earlier run left in the directory.
+  Writer(MPI_Comm comm, const Deck& deck, const RunOptions& options);
 
   [[nodiscard]] bool finished(const std::string& name) const override;
   /// The manifest names it from now on.
@@ -35,6 +36,8 @@ public:
 
 private:
   void write();
+  // Tells rank 0's user of a study that is written.
+  void tell(const std::string& name) const;
   // Where a file goes; rank 0 enters its name into the manifest.
   [[nodiscard]] std::filesystem::path file(const std::string& name);
 
@@ -48,6 +51,8 @@ private:
   std::chrono::steady_clock::time_point started_;
   double earlier_seconds_ = 0;
   std::vector<std::string> undelivered_;
+  std::function<void(const io::StudySummary&)> ended_;
+  std::optional<deck::Quantity> service_speed_;
 };
 
 }  // namespace whirl::study

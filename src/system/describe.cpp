@@ -337,6 +337,11 @@ void describe(deck::Description<Machine>& d) {
       .continuable();
   d.add("loads", &Machine::loads, "static forces and moments on nodes: a belt, a radial thrust, a misaligned coupling")
       .only(&Machine::system, rotor);
+  d.add(
+       "service_speed", &Machine::service_speed, "rad/s", positive,
+       "speed at which the machine runs: screen and report tell together what the studies found there, and margins are "
+       "counted from it where a study has no operating speed of its own")
+      .only(&Machine::system, rotor);
   d.add("lubricants", &Machine::lubricants, "lubricants by name").only(&Machine::system, rotor);
   d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").only(&Machine::system, rotor).required();
   d.add("minimum_film", &Machine::minimum_film, "m", non_negative,

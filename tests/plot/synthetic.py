@@ -113,7 +113,7 @@ def response(root):
         return {"x_amplitude": abs(x), "x_phase": np.angle(x), "y_amplitude": abs(y), "y_phase": np.angle(y),
                 "semi_major": major, "semi_minor": minor}
 
-    put(g.create_group("response"), speed=w, node=[120, 140], **block([3, 2.5]))
+    put(g.create_group("response"), speed=w, node=[120, 140], **block([3, 2.5]), unstable_count=2 * (w > 5000 * RPM), answer=1 - ((w > 2800 * RPM) & (w < 3000 * RPM)))
     put(g.create_group("bearings"), name=NAMES, **block([0.3, 0.6, 1.2, 1.0, 0.7]))
 
 
@@ -249,6 +249,14 @@ def make(directory):
         course(root)
         thd(root)
         sweep(root)
+    quantity = lambda value, unit, bar: {"value": value, "unit": unit, "uncertainty": bar}  # noqa: E731
+    PEAKS = [{"place": place, "speed": quantity(speed, "rpm", 0.1), "semi_major": quantity(size, "m", 2e-7), "amplification_factor": quantity(factor, "1", 0.2),
+              "separation_margin": quantity(margin, "1", None), "required_margin": quantity(0.16, "1", None), "stability": stability, "verdict": verdict,
+              "notes": notes}
+             for place, speed, size, factor, margin, stability, verdict, notes in
+             (("node 120", 2683, 7.5e-5, 12.4, 0.255, "stable", "far enough", []),
+              ("node 120", 5120, 9.1e-5, None, 0.42, "unstable", "", ["no amplification factor: the range ends"]),
+              ("B3, journal", 2690, 3e-5, 11.9, 0.25, "stable", "far enough", []))]
     studies = [
         {"name": "at service speed", "kind": "static", "status": "completed", "wall_seconds": 0.4,
          "values": {"mass.total": {"value": 42165.66, "unit": "kg"}, "load.B3": {"value": None, "unit": "N"}},
@@ -256,7 +264,8 @@ def make(directory):
         {"name": "modes", "kind": "modes", "status": "completed", "wall_seconds": 3.0, "values": {}, "bifurcations": [],
          "modes": [{"speed": 3600, "real": -0.583, "imag": 81.678, "log_decrement": 0.0448, "whirl": "forward"}], "points": 40},
         {"name": "generator pair", "kind": "unbalance_response", "status": "completed", "wall_seconds": 1.0,
-         "values": {"peak.1.speed": {"value": 280.6, "unit": "rad/s"}}, "bifurcations": [], "modes": [], "points": 300},
+         "values": {"peak.1.speed": {"value": 280.6, "unit": "rad/s"}, "operating_speed": {"value": 3600, "unit": "rpm"}}, "bifurcations": [], "modes": [],
+         "points": 300, "peaks": PEAKS},
         {"name": "balanced", "kind": "equilibrium_branch", "status": "completed", "wall_seconds": 5.0, "values": {},
          "bifurcations": [{"type": "hopf", "parameter": "speed", "value": 5025.0, "unit": "rpm", "period_s": 0.0733,
                            "uncertainty": 12.0, "criticality": None}], "modes": [], "points": 70},

@@ -102,6 +102,30 @@ struct Trend {
   std::vector<double> uncertainty = {};    ///< of that
 };
 
+/// A peak of a linear response at one place.
+struct PeakEntry {
+  std::string place = {};  ///< "node 4"; "B1, journal" of a motion in a bearing
+  Quantity speed = {}, semi_major = {}, amplification_factor = {};
+  Quantity separation_margin = {}, required_margin = {};  ///< without unit where no operating speed is known
+  std::string stability = {};                             ///< of the equilibrium there; empty if it was not looked at
+  std::string verdict = {};  ///< whether it keeps its distance from the operating speeds; empty if that is not known
+  std::vector<std::string> notes = {};  ///< why a number is missing, and what the peak must not be taken for
+};
+
+/// One thing that is known of a machine at its service speed.
+struct ServiceFact {
+  std::string what = {}, place = {};
+  Quantity value = {};     ///< not a number where the fact is a word, or where no study gives it
+  std::string mark = {};   ///< a verdict, or what has to be known with the value
+  std::string study = {};  ///< that it is taken from; empty: no study gives it
+};
+
+/// What is known of a machine at its service speed, from the studies that ran.
+struct Service {
+  Quantity speed = {};
+  std::vector<ServiceFact> facts = {};
+};
+
 /// What one study delivered.
 struct StudySummary {
   std::string name = {}, kind = {};
@@ -115,6 +139,7 @@ struct StudySummary {
   std::string stability = {};                        ///< verdict on the whole branch; likewise
   std::vector<StabilityRange> ranges = {};           ///< of a branch, in its order; likewise
   std::vector<std::string> warnings = {};            ///< what its numbers must not be taken for; likewise
+  std::vector<PeakEntry> peaks = {};                 ///< of a response, by place and falling height; likewise
   std::vector<Column> curve = {};                    ///< a curve, column by column of equal length; likewise
   std::vector<ModeEntry> modes = {};
   std::vector<VariantSummary> variants = {};  ///< of a sweep; in the file only if there are any, like what follows
@@ -137,6 +162,8 @@ struct Summary {
   int ranks = 1;
   double wall_seconds = 0;
   std::vector<LibraryOption> options = {};  ///< of PETSc and SLEPc, from whatever source
+  std::vector<std::string> warnings = {};   ///< what is unusual about the deck; in the file only if there are any
+  Service service = {};                     ///< in the file only if the machine has a service speed
   std::vector<StudySummary> studies = {};
 
   /// Replaces the study of the same name or appends it.

@@ -35,7 +35,10 @@ void describe(deck::Description<Deck>& d);
 /// Full references of the sources that help names in short.
 [[nodiscard]] std::span<const deck::Citation> citations();
 
-/// What is unusual about the deck and its variants, a line each; nothing of it keeps the deck from being computed.
+/// What is unusual about the numbers of the machine, a line each; the results carry these.
+[[nodiscard]] std::vector<std::string> unusual(const Deck& deck);
+/// That, and what is unusual about the lengths of the shaft's segments and in variants, a line each; nothing of it
+/// keeps the deck from being computed.
 [[nodiscard]] std::vector<std::string> warnings(const Deck& deck);
 
 /// The deck as understood: valid, SI, every default written out.
@@ -47,6 +50,8 @@ struct RunOptions {
   std::string version;
   /// Shows a progress line on rank 0 (`transient` lines replace each other); empty: silent.
   std::function<void(const std::string& line, bool transient)> say;
+  /// Called on rank 0 as soon as the results of a study are written, and first for those that an earlier run finished.
+  std::function<void(const io::StudySummary& study)> ended;
   bool resume = false;
 };
 

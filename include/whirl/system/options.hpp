@@ -83,6 +83,7 @@ struct Machine : Others {
   rotor::Options rotor;
   Gravity gravity = 9.81;
   std::vector<StaticLoad> loads;
+  std::optional<deck::Quantity> service_speed;  ///< at which the machine runs [rad/s]
   std::map<std::string, film::Lubricant> lubricants;
   std::vector<Bearing> bearings;       ///< in the order of the deck
   std::optional<double> minimum_film;  ///< of every bearing [m]; film::default_minimum_film() if absent

@@ -11,6 +11,7 @@
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
+#include "study/sense.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -119,6 +120,8 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
         summary.set(head + "max_temperature", report.max_temperature, "K");
         summary.set(head + "mean_temperature", report.mean_temperature, "K");
       }
+      put_film_numbers(summary, head, support, report, std::hypot(films[b].force[0], films[b].force[1]),
+                       system.speed());
       summary.set(head + "side_flow", report.side_flow, "m^3/s");
       // Only pads with a start know it; a film that reforms freely has no inlet.
       if (std::isfinite(report.inlet_flow)) summary.set(head + "inlet_flow", report.inlet_flow, "m^3/s");
@@ -201,6 +204,7 @@ StudyResult Static::run(Context& context) {
           "The machine does not stay where these results show it", summary);
   // Of all that the summary holds so far: what follows has no mesh.
   put_bars(context, system, options.speed.value, x);
+  warn_of_films(summary, system.train());
   const auto& rotor = system.train().rotor;
   summary.set("mass.total", rotor::total_mass(rotor), "kg");
   for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {

@@ -13,6 +13,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
+#include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/transfer_points.hpp"
@@ -25,6 +26,10 @@ namespace {
 
 using Complex = std::complex<double>;
 using Matrices = std::vector<std::vector<Complex>>;  // per frequency
+
+void append(std::vector<double>& out, const std::vector<Complex>& matrix) {
+  for (const Complex& g : matrix) out.insert(out.end(), {g.real(), g.imag()});
+}
 
 // The machine with constant stiffness and damping in place of its films.
 system::Train with_coefficients(system::Train train, const std::vector<FilmCoefficients>& films) {
@@ -61,12 +66,7 @@ public:
         matrix_(system_, options.inputs, outputs) {}
 
   std::vector<Complex> at(const Way& way, double omega) {
-    if (!linearised_) {
-      const Vec x = walker_.at(options_.speed.value);
-      matrix_.linearise(x);
-      whole_ = system_.gather(x);
-      linearised_ = true;
-    }
+    linearise();
     if (way.films == Way::Films::whole) return matrix_.at(omega);
     const double frequency = way.films == Way::Films::constant ? way.frequency : omega;
     if (frequency != last_ || way.films != last_films_) {
@@ -89,7 +89,27 @@ public:
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
+  // What grows about the equilibrium: real parts, then pairs, behind the numbers of missed and of real ones; nothing if
+  // that could not be computed.
+  std::vector<double> growing() {
+    std::vector<double> out;
+    (void)has_answer([&] {
+      const Growth growth = growth_at(system_, walker_.at(options_.speed.value));
+      out = {static_cast<double>(growth.missed), static_cast<double>(growth.real.size())};
+      out.insert(out.end(), growth.real.begin(), growth.real.end());
+      append(out, growth.pairs);
+    });
+    return out;
+  }
+
 private:
+  void linearise() {
+    if (linearised_) return;
+    const Vec x = walker_.at(options_.speed.value);
+    matrix_.linearise(x);
+    whole_ = system_.gather(x);
+    linearised_ = true;
+  }
   void put_given(std::vector<FilmCoefficients>& films, double frequency) const {
     for (std::size_t b = 0; b < films.size(); ++b)
       for (const GivenCoefficients& g : options_.given) {
@@ -146,10 +166,6 @@ std::size_t largest_of(const Matrices& found, std::size_t response) {
   return most;
 }
 
-void append(std::vector<double>& out, const std::vector<Complex>& matrix) {
-  for (const Complex& g : matrix) out.insert(out.end(), {g.real(), g.imag()});
-}
-
 // Error bars of complex responses at some of the frequencies, in the units of these; NaN: unknown. Empty without film
 // meshes.
 struct TransferBars {
@@ -198,6 +214,22 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   return out;
 }
 
+// The verdict on the equilibrium from what Transfers::growing() found, and a warning where something grows.
+void put_growth(const std::vector<double>& found, const std::string& where, io::StudySummary& summary) {
+  summary.stability = "undetermined";
+  if (found.empty()) return;
+  Growth growth;
+  growth.missed = static_cast<int>(found[0]);
+  const auto real = static_cast<std::size_t>(found[1]);
+  for (std::size_t k = 2; k < found.size(); k += k < 2 + real ? 1 : 2)
+    if (k < 2 + real)
+      growth.real.push_back(found[k]);
+    else
+      growth.pairs.emplace_back(found[k], found[k + 1]);
+  if (growth.any() || growth.missed == 0) summary.stability = growth.any() ? "unstable" : "stable";
+  warn_of(growth, where, "no vibration settles into these transfer functions", summary);
+}
+
 }  // namespace
 
 StudyResult FrequencyResponse::run(Context& context) {
@@ -240,6 +272,13 @@ StudyResult FrequencyResponse::run(Context& context) {
     }
   }
 
+  // Equilibria know of no loss factor: of such shafts nothing is asked.
+  if (context.machine.rotor.loss_factor == 0) {
+    const auto compute = [&](std::size_t) { return machine.growing(); };
+    put_growth(distribute(layout, 1, compute, pieces, "stability", machine.trail()).front(),
+               fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
+               summary);
+  }
   const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0]);
 
   auto& group = results.group();

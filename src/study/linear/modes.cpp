@@ -20,6 +20,7 @@
 #include "study/linear/mode_stations.hpp"
 #include "study/linear/mode_tables.hpp"
 #include "study/linear/mode_values.hpp"
+#include "study/linear/peak_list.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
@@ -249,6 +250,7 @@ StudyResult Modes::run(Context& context) {
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   std::vector<double> critical_speed, critical_decrement;
   std::vector<std::int64_t> critical_mode;
+  const auto operating = operating_range(options.operating, {}, context.machine.service_speed);
   for (std::size_t k = 0; k < criticals.size(); ++k) {
     summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit,
                 bars.as_bar(deck::from_si(criticals[k].error, unit)));
@@ -256,11 +258,12 @@ StudyResult Modes::run(Context& context) {
                 bars.as_bar(criticals[k].decrement_error));
     summary.set(fmt::format("critical.{}.mode", k + 1), criticals[k].id, "1");
     put_margins(summary, fmt::format("critical.{}.", k + 1), criticals[k].speed, criticals[k].error,
-                criticals[k].decrement, criticals[k].decrement_error, options.operating);
+                criticals[k].decrement, criticals[k].decrement_error, operating);
     critical_speed.push_back(criticals[k].speed);
     critical_decrement.push_back(criticals[k].decrement);
     critical_mode.push_back(criticals[k].id);
   }
+  warn_of_amplification(summary);
   group.child("critical").put("speed", critical_speed, "rad/s", "speed equal to the damped frequency");
   group.child("critical").put("log_decrement", critical_decrement, "1", "of the mode there");
   group.child("critical").put("mode", critical_mode, "mode followed by its shape");

@@ -79,7 +79,7 @@ void put_locations(io::StudySummary& summary, const std::vector<NamedPeak>& peak
 }  // namespace
 
 void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
-                       const std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve) {
+                       std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve) {
   if (meshes.empty()) return put_locations(summary, peaks);
   const Tops tops(peaks);
   const std::vector<double> speeds = tops.speeds();
@@ -93,8 +93,12 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
       if (!known) return;
       const MeshResponse moved = solve(meshes[i].factor, speeds, fmt::format("bars {}", i + 1));
       there = moved.operating;
-      for (const NamedPeak& p : peaks) {
+      for (NamedPeak& p : peaks) {
         const Top a = tops.of(p, here), b = tops.of(p, moved);
+        if (!(b.quality > 0)) {
+          p.vanishes = true;
+          continue;
+        }
         put(there, p.head, p.speed + b.speed - a.speed, p.height + b.height - a.height,
             p.amplification * b.quality / a.quality);
       }

@@ -19,6 +19,7 @@ struct NamedPeak {
   std::size_t node = 0;
   double speed = 0, height = 0, amplification = 0;  ///< [rad/s, m, 1]
   PeakErrors errors = {};
+  bool vanishes = false;  ///< on another film mesh the response has no peak there
 };
 
 /// The response on one film mesh: semi-major axes [speed][node], and the values at operating speed.
@@ -34,9 +35,10 @@ using PutPeak = std::function<void(io::StudySummary& to, const std::string& head
 /// Puts bars beside all values of the summary. On each other film mesh a peak is the foot of the parabola of 1/f^2
 /// through three speeds about it; it moves as that top does against the one of the mesh in use. Peaks that stand
 /// together share their three speeds. The amplification factor changes like Q, the root of the curvature over the
-/// height of that parabola. Where `solve` fails on the mesh in use all bars are unknown, which a warning says.
-/// Collective.
+/// height of that parabola. Where the response of another mesh bends upwards there, the peak is none on that mesh: its
+/// bars are unknown, and it `vanishes`. Where `solve` fails on the mesh in use all bars are unknown, which a warning
+/// says. Collective.
 void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
-                       const std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve);
+                       std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve);
 
 }  // namespace whirl::study

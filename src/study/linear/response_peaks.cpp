@@ -26,18 +26,29 @@ double foot_of(const ResponseCurve& curve, std::size_t top) {
 
 // Where the curve falls to 0.707 of a peak's height on either side of it (API 684): between two speeds of the curve.
 // There 1/f^2 is a straight line over (N - N_top)^2, as it is of a single resonance f = f_top/sqrt(1 + (2 Q (N/N_top -
-// 1))^2). Nothing where the curve ends first.
+// 1))^2). Nothing where the curve ends first, or rises above the peak.
 struct Side {
   double inner = 0, outer = 0, crossing = 0;
 };
-std::array<std::optional<Side>, 2> sides_of(const ResponseCurve& curve, std::size_t top) {
+std::array<std::optional<Side>, 2> sides_of(const ResponseCurve& curve, std::size_t top,
+                                            std::string* reason = nullptr) {
   const auto value = [&](std::size_t k) { return curve.height[k]; };
-  const double level = value(top) / std::sqrt(2.0), middle = curve.speed[top];
+  const double level = value(top) / std::sqrt(2.0), middle = curve.speed[top],
+               higher = value(top) * (1 + height_tolerance);
   std::array<std::optional<Side>, 2> sides;
   for (std::size_t s = 0; s < 2; ++s) {
     std::size_t outer = top;
-    while ((s == 0 ? outer > 0 : outer + 1 < curve.speed.size()) && value(outer) > level) s == 0 ? --outer : ++outer;
-    if (value(outer) > level) continue;
+    while ((s == 0 ? outer > 0 : outer + 1 < curve.speed.size()) && value(outer) > level && value(outer) <= higher)
+      s == 0 ? --outer : ++outer;
+    if (value(outer) > level) {
+      if (reason && reason->empty())
+        *reason = std::string("the response does not fall to 0.707 of the peak ") + (s == 0 ? "below" : "above") +
+                  " it before " +
+                  (value(outer) > higher ? "a higher peak rises"
+                   : s == 0              ? "the range begins"
+                                         : "the range ends");
+      continue;
+    }
     const std::size_t inner = s == 0 ? outer + 1 : outer - 1;
     const auto g = [](double f) { return 1 / (f * f); };
     const auto apart = [&](std::size_t k) { return (curve.speed[k] - middle) * (curve.speed[k] - middle); };
@@ -48,9 +59,9 @@ std::array<std::optional<Side>, 2> sides_of(const ResponseCurve& curve, std::siz
   return sides;
 }
 
-// N/(N2 - N1)
-double amplification(const ResponseCurve& curve, std::size_t top) {
-  const auto sides = sides_of(curve, top);
+// N/(N2 - N1), or why there is none.
+double amplification(const ResponseCurve& curve, std::size_t top, std::string& reason) {
+  const auto sides = sides_of(curve, top, &reason);
   if (!sides[0] || !sides[1]) return std::numeric_limits<double>::quiet_NaN();
   return curve.speed[top] / (sides[1]->crossing - sides[0]->crossing);
 }
@@ -73,9 +84,18 @@ constexpr double narrow = 0.5;
 }  // namespace
 
 std::vector<std::size_t> ResponseCurve::tops() const {
+  // Whether the curve falls far enough on a side of k, before it rises above. Of equal samples the first one counts.
+  const auto falls = [&](std::size_t k, bool to_the_left) {
+    const double enough = height[k] * (1 - height_tolerance);
+    for (std::size_t i = k; to_the_left ? i-- > 0 : ++i < height.size();) {
+      if (height[i] < enough) return true;
+      if (to_the_left ? height[i] >= height[k] : height[i] > height[k]) return false;
+    }
+    return false;
+  };
   std::vector<std::size_t> found;
   for (std::size_t k = 1; k + 1 < height.size(); ++k) {
-    if (!(height[k] > height[k - 1] && height[k] >= height[k + 1])) continue;
+    if (!(height[k] > height[k - 1] && height[k] >= height[k + 1]) || !falls(k, true) || !falls(k, false)) continue;
     if (!found.empty() && speed[k] - speed[found.back()] < 2 * peak_tolerance * speed[k]) {
       if (height[k] > height[found.back()]) found.back() = k;
       continue;
@@ -83,6 +103,19 @@ std::vector<std::size_t> ResponseCurve::tops() const {
     found.push_back(k);
   }
   return found;
+}
+
+std::vector<double> worth_asking(std::vector<double> speeds, const std::vector<double>& known) {
+  std::sort(speeds.begin(), speeds.end());
+  std::vector<double> out;
+  for (const double s : speeds) {
+    const double least = least_step * s;
+    const auto next = std::lower_bound(known.begin(), known.end(), s);
+    const bool near = (next != known.end() && *next - s < least) ||
+                      (next != known.begin() && s - *(next - 1) < least) || (!out.empty() && s - out.back() < least);
+    if (!near) out.push_back(s);
+  }
+  return out;
 }
 
 void ask_for_top(const ResponseCurve& curve, std::size_t top, int pass, std::vector<double>& speeds) {
@@ -109,12 +142,14 @@ void ask_for_width(const ResponseCurve& curve, std::size_t top, std::vector<doub
 }
 
 Peak peak_at(const ResponseCurve& curve, std::size_t top) {
-  Peak p{curve.speed[top], curve.height[top], amplification(curve, top), {}};
+  Peak p{curve.speed[top], curve.height[top], 0, {}};
+  p.amplification = amplification(curve, top, p.no_factor);
   const double off = std::abs(foot_of(curve, top) - p.speed) / p.speed;
   p.errors.speed = off <= peak_tolerance ? peak_tolerance : PeakErrors::unknown;
   const double share = 2 * p.amplification * peak_tolerance;
   if (share > narrow) {
     p.height = p.amplification = PeakErrors::unknown;
+    p.no_factor = "it is narrower than the tolerance of its speed, as an undamped resonance is";
     return p;
   }
   p.errors.height = p.errors.speed + (std::isfinite(share) ? share * share / 2 : 0);
@@ -122,6 +157,23 @@ Peak peak_at(const ResponseCurve& curve, std::size_t top) {
   const auto left = left_of_width(sides_of(curve, top));
   p.errors.factor =
       std::max(left[0], left[1]) <= width_tolerance ? width_tolerance + p.errors.height : PeakErrors::unknown;
+  return p;
+}
+
+Peak peak_between(const ResponseCurve& curve, std::size_t top) {
+  Peak p = peak_at(curve, top);
+  p.errors = {};
+  const double foot = foot_of(curve, top);
+  if (!std::isfinite(p.height) || !std::isfinite(foot) || top == 0 || top + 1 >= curve.speed.size()) return p;
+  // Newton's form of the parabola of g = 1/f^2 through the top and its neighbours.
+  const auto g = [&](std::size_t k) { return 1 / (curve.height[k] * curve.height[k]); };
+  const auto s = [&](std::size_t k) { return curve.speed[k]; };
+  const double first = (g(top) - g(top - 1)) / (s(top) - s(top - 1)),
+               second = ((g(top + 1) - g(top)) / (s(top + 1) - s(top)) - first) / (s(top + 1) - s(top - 1)),
+               least = g(top - 1) + first * (foot - s(top - 1)) + second * (foot - s(top - 1)) * (foot - s(top));
+  if (!(least > 0) || !(least <= g(top))) return p;
+  p.speed = foot;
+  p.height = 1 / std::sqrt(least);
   return p;
 }
 

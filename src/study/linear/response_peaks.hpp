@@ -3,12 +3,18 @@
 
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace whirl::study {
 
 inline constexpr double peak_tolerance = 1e-5;   ///< of the speed of a peak
 inline constexpr double width_tolerance = 1e-3;  ///< of the width of a peak, for its amplification factor
+/// Of its height that a peak stands above the curve on either side: less may be what the equilibria leave of their
+/// equations, and rounding.
+inline constexpr double height_tolerance = 1e-6;
+/// Of the speed: nearer speeds say nothing new of a place that is known to peak_tolerance.
+inline constexpr double least_step = 0.1 * peak_tolerance;
 
 /// What the refinement of a peak leaves of its values, relative to them; not a number where it did not settle.
 struct PeakErrors {
@@ -20,21 +26,30 @@ struct PeakErrors {
 struct ResponseCurve {
   std::vector<double> speed, height;
 
-  /// Samples higher than their neighbours; of two that are nearer than the tolerance the higher one.
+  /// Samples from which the curve falls on either side by more than height_tolerance before it rises above them; of two
+  /// that are nearer than the tolerance the higher one.
   [[nodiscard]] std::vector<std::size_t> tops() const;
 };
 
 /// A peak at one of the samples. Where a resonance is narrower than the tolerance of its speed, as an undamped one is,
-/// it has no height and no factor: not a number.
+/// it has no height and no factor: not a number. It has no factor either where the curve does not fall to 0.707 of its
+/// height on both sides before the range ends or a higher peak rises.
 struct Peak {
   double speed = 0, height = 0, amplification = 0;  ///< rad/s; m; N/(N2 - N1) at 0.707 of the height (API 684)
   PeakErrors errors;
+  std::string no_factor = {};  ///< why it has no amplification factor
 };
 [[nodiscard]] Peak peak_at(const ResponseCurve& curve, std::size_t top);
+/// The same of a curve that was not refined about this top: speed and height by the parabola of 1/f^2 through the
+/// samples about it, errors unknown.
+[[nodiscard]] Peak peak_between(const ResponseCurve& curve, std::size_t top);
 
 /// Speeds [rad/s] that settle the place of a top; none if it is settled. `pass` counts the attempts.
 void ask_for_top(const ResponseCurve& curve, std::size_t top, int pass, std::vector<double>& speeds);
 /// Speeds [rad/s] that settle the width of a peak.
 void ask_for_width(const ResponseCurve& curve, std::size_t top, std::vector<double>& speeds);
+/// Of the speeds that were asked for, rising, those that are at least least_step from each other and from the `known`
+/// ones, which rise.
+[[nodiscard]] std::vector<double> worth_asking(std::vector<double> speeds, const std::vector<double>& known);
 
 }  // namespace whirl::study

@@ -6,64 +6,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
 
-#include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
+#include "study/growth.hpp"
 #include "study/layout.hpp"
+#include "study/linear/peak_list.hpp"
 #include "study/linear/response_bars.hpp"
-#include "study/linear/response_peaks.hpp"
+#include "study/linear/response_record.hpp"
+#include "study/linear/stable_speeds.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/thickness.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/newton/frequency_response.hpp"
-#include "whirl/study/linear/separation.hpp"
 
 namespace whirl::study {
 namespace {
 
 using Complex = std::complex<double>;
-
-// x = Re(z exp(i angle)) of one place.
-struct NodeMotion {
-  Complex x, y;
-
-  // z = x + i y is the sum of a forward circle |f| and a backward circle |g|.
-  [[nodiscard]] double forward() const { return std::abs(x + Complex(0, 1) * y) / 2; }
-  [[nodiscard]] double backward() const { return std::abs(x - Complex(0, 1) * y) / 2; }
-  [[nodiscard]] double semi_major() const { return forward() + backward(); }
-  [[nodiscard]] double semi_minor() const { return forward() - backward(); }  // negative: backward orbit
-};
-
-struct Response {
-  double speed = 0;
-  std::vector<NodeMotion> nodes, bearings;
-  std::vector<double> films;  // smallest thickness that the linear motion leaves each bearing [m]
-};
-
-std::vector<double> pack(const Response& r) {
-  std::vector<double> flat{r.speed};
-  for (const auto* place : {&r.nodes, &r.bearings})
-    for (const NodeMotion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
-  flat.insert(flat.end(), r.films.begin(), r.films.end());
-  return flat;
-}
-
-Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings) {
-  Response r;
-  r.speed = flat[0];
-  for (std::size_t k = 0; k < n_nodes + n_bearings; ++k) {
-    const double* v = flat.data() + 1 + 4 * k;
-    (k < n_nodes ? r.nodes : r.bearings).push_back({{v[0], v[1]}, {v[2], v[3]}});
-  }
-  r.films.assign(flat.end() - static_cast<std::ptrdiff_t>(n_bearings), flat.end());
-  return r;
-}
 
 // The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
 // gives way; there the motion counts against the clearance.
@@ -148,6 +113,16 @@ public:
     return r;
   }
 
+  // Eigenvalues that grow about the equilibrium at a speed, StableSpeeds::unknown where some may be missing.
+  int growing(double speed) {
+    int number = StableSpeeds::unknown;
+    (void)has_answer([&] {
+      const Growth growth = growth_at(system_, walker_.at(speed));
+      if (growth.any() || growth.missed == 0) number = growth.count();
+    });
+    return number;
+  }
+
   [[nodiscard]] system::ShownPlaces places() const { return system_.places(); }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
@@ -158,67 +133,62 @@ private:
   std::vector<int> nodes_;
 };
 
-void put_operating(const Context& context, const std::vector<int>& nodes, const Response& r,
-                   io::StudySummary& summary) {
-  const auto names = names_of_bearings(context.machine);
-  for (std::size_t b = 0; b < names.size(); ++b) {
-    summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
-    summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
-  }
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+std::vector<double> speeds_of(const std::vector<Response>& curve) {
+  std::vector<double> speeds;
+  for (const Response& r : curve) speeds.push_back(r.speed);
+  return speeds;
 }
 
-void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<NodeMotion> Response::*place,
-                const std::string& text) {
-  const io::Shape shape{curve.size(), (curve.front().*place).size()};
-  std::map<std::string, std::vector<double>> column;
-  for (const Response& r : curve)
-    for (const NodeMotion& m : r.*place) {
-      column["x_amplitude"].push_back(std::abs(m.x));
-      column["x_phase"].push_back(std::arg(m.x));
-      column["y_amplitude"].push_back(std::abs(m.y));
-      column["y_phase"].push_back(std::arg(m.y));
-      column["semi_major"].push_back(m.semi_major());
-      column["semi_minor"].push_back(m.semi_minor());
-    }
-  for (auto& [name, values] : column) {
-    const bool phase = name.ends_with("phase");
-    g.put(name, shape, std::move(values), phase ? "rad" : "m",
-          text + (phase ? ", phase ahead of the shaft angle" : ", 0-peak"));
-  }
+const Response& nearest(const std::vector<Response>& curve, double speed) {
+  return *std::ranges::min_element(curve, {}, [&](const Response& r) { return std::abs(r.speed - speed); });
 }
 
-// Linear motions know no bore: where they leave less film than the surfaces bear they are none.
-void put_films(io::Group& group, io::StudySummary& summary, const system::ShownPlaces& places,
-               const std::vector<Response>& curve, const std::string& unit) {
-  std::vector<double> all;
-  for (const Response& r : curve) {
-    const auto films = film_column(r.films, places.names.size());
-    all.insert(all.end(), films.begin(), films.end());
-  }
-  group.child("bearings")
-      .put("film_min", {curve.size(), places.names.size()}, all, "m",
-           "smallest film thickness that the linear motion leaves, at mid-plane of films that do not tilt, not a "
-           "number without a film");
-  for (std::size_t b = 0; b < places.names.size(); ++b) {
-    const Response *worst = nullptr, *first = nullptr, *last = nullptr;
-    for (const Response& r : curve) {
-      if (!std::isfinite(r.films[b])) continue;
-      if (!worst || r.films[b] < worst->films[b]) worst = &r;
-      if (r.films[b] > 0 && r.films[b] >= places.least_films[b]) continue;
-      if (!first) first = &r;
-      last = &r;
-    }
-    if (!worst) continue;
-    summary.set("bearing." + places.names[b] + ".film_min", worst->films[b], "m");
-    if (first)
-      summary.warnings.push_back(fmt::format(
-          "the linear motion leaves bearing {} {:.3g} um of film at {:.6g} {}, less than the {:.3g} um below which the "
-          "surfaces touch (minimum_film): no answer between {:.6g} and {:.6g} {}",
-          places.names[b], worst->films[b] * 1e6, deck::from_si(worst->speed, unit), unit, places.least_films[b] * 1e6,
-          deck::from_si(first->speed, unit), deck::from_si(last->speed, unit), unit));
-  }
+// The peaks of a curve by falling height; those without a height are the highest.
+std::vector<Peak> peaks_of(const ResponseCurve& curve, Peak (*at)(const ResponseCurve&, std::size_t)) {
+  std::vector<Peak> own;
+  for (const std::size_t k : curve.tops()) own.push_back(at(curve, k));
+  std::ranges::stable_sort(own, std::greater{}, [](const Peak& p) {
+    return std::isfinite(p.height) ? p.height : std::numeric_limits<double>::infinity();
+  });
+  return own;
+}
+
+// Equilibria know of no loss factor: of such shafts nothing is asked.
+StableSpeeds stability(const Context& context, const std::vector<Response>& curve,
+                       const std::optional<deck::Quantity>& operating, const StableSpeeds::Count& count) {
+  if (context.machine.rotor.loss_factor > 0) return {};
+  std::vector<double> speeds = speeds_of(curve);
+  if (operating) speeds.push_back(operating->value);
+  std::ranges::sort(speeds);
+  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+  return {std::move(speeds), count};
+}
+
+// What the summary has of a peak with its bars.
+void take_bars(const io::StudySummary& summary, const std::string& head, io::PeakEntry& entry) {
+  for (const auto& [name, q] : summary.values)
+    for (const PeakValue& v : peak_values())
+      if (name == head + v.name) entry.*v.member = q;
+}
+
+void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit) {
+  const double low = deck::from_si(operating.from, unit), high = deck::from_si(operating.to, unit);
+  if (low == high) return summary.set("operating_speed", low, unit);
+  summary.set("operating_range.from", low, unit);
+  summary.set("operating_range.to", high, unit);
+}
+
+// Marks the speeds at which the equilibrium is unstable: there nothing settles into the linear motion.
+void put_stability(io::Group& group, io::StudySummary& summary, const std::vector<Response>& curve,
+                   const StableSpeeds& stable, const std::optional<deck::Quantity>& operating,
+                   const std::string& unit) {
+  if (!stable.known()) return;
+  std::vector<std::int64_t> numbers;
+  for (const Response& r : curve) numbers.push_back(stable.at(r.speed));
+  group.child("response")
+      .put("unstable_count", numbers, "eigenvalues that grow about the equilibrium; -1: some may be missing");
+  put_verdict(summary, stable, unit);
+  if (operating) summary.set("operating_speed.unstable_count", stable.at(operating->value), "1");
 }
 
 }  // namespace
@@ -264,28 +234,21 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // Speeds added around the peaks of each node until the parabola of 1/f^2 settles the speed to 1e-5.
   const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
   std::sort(curve.begin(), curve.end(), by_speed);
-  const auto curve_of = [&](std::size_t node) {
-    ResponseCurve of;
-    for (const Response& r : curve) {
-      of.speed.push_back(r.speed);
-      of.height.push_back(r.nodes[node].semi_major());
-    }
-    return of;
-  };
-  const auto add = [&](const std::vector<double>& speeds) {
+  const auto add = [&](std::vector<double> speeds) {
+    speeds = worth_asking(std::move(speeds), speeds_of(curve));
     for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
     std::sort(curve.begin(), curve.end(), by_speed);
+    return !speeds.empty();
   };
   // Until no top of any node asks for more.
   const auto settle = [&](int passes, const auto& ask) {
     for (int pass = 0; pass < passes; ++pass) {
       std::vector<double> speeds;
       for (std::size_t node = 0; node < nodes.size(); ++node) {
-        const ResponseCurve of = curve_of(node);
+        const ResponseCurve of = curve_at(curve, &Response::nodes, node);
         for (const std::size_t k : of.tops()) ask(of, k, pass, speeds);
       }
-      if (speeds.empty()) return;
-      add(speeds);
+      if (speeds.empty() || !add(std::move(speeds))) return;
     }
   };
   // Then speeds around the two places where each peak has fallen to 0.707 of its height; these may show a higher top.
@@ -296,62 +259,70 @@ StudyResult UnbalanceResponse::run(Context& context) {
     });
   }
 
+  const auto operating = operating_range(options.operating, options.operating_speed, context.machine.service_speed);
+  const auto& operating_speed = options.operating_speed ? options.operating_speed : context.machine.service_speed;
+  const StableSpeeds stable = stability(context, curve, operating_speed, [&](const std::vector<double>& speeds) {
+    const auto compute = [&](std::size_t i) {
+      return std::vector<double>{static_cast<double>(machine.growing(speeds[i]))};
+    };
+    std::vector<int> out;
+    for (const auto& one :
+         distribute(layout, speeds.size(), compute, pieces, fmt::format("{} stability", ++calls), machine.trail()))
+      out.push_back(static_cast<int>(one.front()));
+    return out;
+  });
+
   const auto put_peak = [&](io::StudySummary& to, const std::string& head, double speed, double height, double factor) {
-    to.set(head + "speed", deck::from_si(speed, unit), unit);
-    to.set(head + "semi_major", height, "m");
-    to.set(head + "amplification_factor", factor, "1");
-    if (!options.operating && !options.operating_speed) return;
-    const double lowest = options.operating ? options.operating->from : options.operating_speed->value,
-                 highest = options.operating ? options.operating->to : lowest;
-    const Separation margin = separation(speed, factor, lowest, highest);
-    to.set(head + "separation_margin", margin.actual, "1");
-    to.set(head + "required_margin", margin.required, "1");
+    const io::PeakEntry entry = entry_of("", {speed, height, factor, {}, {}}, unit, operating);
+    for (const PeakValue& v : peak_values())
+      if (const io::Quantity& q = entry.*v.member; !q.unit.empty()) to.set(head + v.name, q.value, q.unit);
   };
-  std::vector<Peak> peaks;
+  const system::ShownPlaces places = machine.places();
+  const auto marked = [&](io::PeakEntry entry, double speed) {
+    if (stable.known()) entry.stability = StableSpeeds::word(stable.at(nearest(curve, speed).speed));
+    if (const std::string bearing = touched(nearest(curve, speed), places); !bearing.empty())
+      entry.notes.push_back("no answer: the motion leaves bearing " + bearing + " too little film");
+    return entry;
+  };
+  std::vector<io::PeakEntry> entries;
+  std::vector<std::string> heads;  // of the values of each
   std::vector<NamedPeak> named;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
-    std::vector<Peak> own;
-    const ResponseCurve of = curve_of(node);
-    for (const std::size_t k : of.tops()) own.push_back(peak_at(of, k));
-    // Those without a height are the highest.
-    const auto height = [](const Peak& p) {
-      return std::isfinite(p.height) ? p.height : std::numeric_limits<double>::infinity();
-    };
-    std::stable_sort(own.begin(), own.end(), [&](const Peak& a, const Peak& b) { return height(a) > height(b); });
+    const std::vector<Peak> own = peaks_of(curve_at(curve, &Response::nodes, node), peak_at);
     for (std::size_t k = 0; k < own.size(); ++k) {
       const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
       put_peak(summary, head, own[k].speed, own[k].height, own[k].amplification);
+      entries.push_back(marked(entry_of(fmt::format("node {}", nodes[node]), own[k], unit, operating), own[k].speed));
+      heads.push_back(head);
       if (!std::isfinite(own[k].height))
         summary.warnings.push_back(
             fmt::format("node {}: the peak near {:.6g} {} has no height: it grows as the speed comes nearer, as an "
                         "undamped resonance does",
                         nodes[node], deck::from_si(own[k].speed, unit), unit));
       named.push_back({head, node, own[k].speed, own[k].height, own[k].amplification, own[k].errors});
+      // The first node named in the deck is the one the report speaks of; its highest peak comes first.
       if (node == 0) {
         named.push_back(named.back());
         named.back().head = fmt::format("peak.{}.", k + 1);
       }
     }
-    if (node == 0) peaks = own;
   }
-  // The first node named in the deck is the one the report speaks of; its highest peak comes first.
-  for (std::size_t k = 0; k < peaks.size(); ++k) {
-    const std::string head = fmt::format("peak.{}.", k + 1);
-    summary.set(head + "node", nodes.front(), "1");
-    put_peak(summary, head, peaks[k].speed, peaks[k].height, peaks[k].amplification);
-  }
-  if (options.operating_speed) {
-    put_operating(context, nodes, at_speeds({options.operating_speed->value}).front(), summary);
-  }
+  for (const NamedPeak& p : named)
+    if (p.head.starts_with("peak.")) {
+      summary.set(p.head + "node", nodes.front(), "1");
+      put_peak(summary, p.head, p.speed, p.height, p.amplification);
+    }
+  const auto names = names_of_bearings(context.machine);
+  if (operating_speed) put_operating(names, nodes, at_speeds({operating_speed->value}).front(), summary);
   put_response_bars(summary, film_meshes(context.machine, context.layout), law_of(context.machine), named, put_peak,
                     [&](const std::array<double, 2>& cells, std::vector<double> at, const std::string& piece) {
                       std::optional<Responder> other;
                       if (cells != std::array<double, 2>{1, 1}) other.emplace(context, layout, options, nodes, cells);
-                      if (options.operating_speed) at.push_back(options.operating_speed->value);
+                      if (operating_speed) at.push_back(operating_speed->value);
                       std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
                       MeshResponse out;
-                      if (options.operating_speed) {
-                        put_operating(context, nodes, all.back(), out.operating);
+                      if (operating_speed) {
+                        put_operating(names, nodes, all.back(), out.operating);
                         all.pop_back();
                       }
                       for (const Response& r : all) {
@@ -360,13 +331,25 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       }
                       return out;
                     });
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    take_bars(summary, heads[k], entries[k]);
+    const bool vanishes = std::ranges::any_of(named, [&](const auto& p) { return p.head == heads[k] && p.vanishes; });
+    if (vanishes) entries[k].notes.emplace_back("undetermined: on another film mesh the response has no peak there");
+  }
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    for (const Peak& p : peaks_of(curve_at(curve, &Response::bearings, b), peak_between))
+      entries.push_back(marked(entry_of(names[b] + ", journal", p, unit, operating), p.speed));
+  }
+  for (io::PeakEntry& p : entries) p.verdict = verdict_of(p);
+  summary.peaks = std::move(entries);
 
   auto& group = results.group();
-  put_films(group, summary, machine.places(), curve, unit);
+  put_films(group, summary, places, curve, unit);
+  put_stability(group, summary, curve, stable, operating_speed, unit);
+  warn_of_amplification(summary);
+  if (operating) put_operating_range(summary, *operating, unit);
   auto& response = group.child("response");
-  std::vector<double> speeds;
-  for (const Response& r : curve) speeds.push_back(r.speed);
-  response.put("speed", speeds, "rad/s", "shaft speed");
+  response.put("speed", speeds_of(curve), "rad/s", "shaft speed");
   response.put("node", std::vector<std::int64_t>(nodes.begin(), nodes.end()), "shaft nodes, 1-based");
   put_motion(response, curve, &Response::nodes, "absolute motion of the shaft");
   response.label_each({io::node_labels(nodes)});

@@ -1,0 +1,89 @@
+#include "study/linear/peak_list.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace whirl::study {
+namespace {
+
+constexpr double damped = 2.5;
+
+double bar_of(const io::Quantity& q) {
+  const auto at = q.more.find("uncertainty");
+  return at != q.more.end() && std::isfinite(at->second) ? at->second : 0;
+}
+
+}  // namespace
+
+std::optional<deck::Range> operating_range(const std::optional<deck::Range>& range,
+                                           const std::optional<deck::Quantity>& speed,
+                                           const std::optional<deck::Quantity>& service) {
+  if (range) return range;
+  const auto& one = speed ? speed : service;
+  if (!one) return std::nullopt;
+  return deck::Range{one->value, one->value, one->unit};
+}
+
+const std::vector<PeakValue>& peak_values() {
+  static const std::vector<PeakValue> all{{"speed", &io::PeakEntry::speed},
+                                          {"semi_major", &io::PeakEntry::semi_major},
+                                          {"amplification_factor", &io::PeakEntry::amplification_factor},
+                                          {"separation_margin", &io::PeakEntry::separation_margin},
+                                          {"required_margin", &io::PeakEntry::required_margin}};
+  return all;
+}
+
+io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::string& unit,
+                       const std::optional<deck::Range>& operating) {
+  io::PeakEntry out;
+  out.place = place;
+  out.speed = {deck::from_si(peak.speed, unit), unit};
+  out.semi_major = {peak.height, "m"};
+  out.amplification_factor = {peak.amplification, "1"};
+  if (!peak.no_factor.empty()) out.notes.push_back("no amplification factor: " + peak.no_factor);
+  if (!operating) return out;
+  const Separation margin = separation(peak.speed, peak.amplification, operating->from, operating->to);
+  out.separation_margin = {margin.actual, "1"};
+  out.required_margin = {margin.required, "1"};
+  return out;
+}
+
+std::string verdict_of(const io::PeakEntry& peak) {
+  const double factor = peak.amplification_factor.value, bar = bar_of(peak.amplification_factor);
+  if (!std::isfinite(factor)) return {};
+  if (factor + bar < damped) return "damped, not critical";
+  if (factor - bar < damped) return "undetermined";
+  if (peak.required_margin.unit.empty()) return {};
+  const double missing = peak.required_margin.value - peak.separation_margin.value,
+               bars = bar_of(peak.required_margin) + bar_of(peak.separation_margin);
+  if (missing != 0 && std::abs(missing) <= bars) return "undetermined";
+  return missing > 0 ? "too near" : "far enough";
+}
+
+void warn_of_amplification(io::StudySummary& summary) {
+  std::vector<std::string> high;
+  const auto see = [&](const io::Quantity& factor, const io::Quantity& speed, const std::string& where) {
+    if (factor.value - bar_of(factor) > high_amplification)
+      high.push_back(fmt::format("{:.3g} at {:.5g} {}{}", factor.value, speed.value, speed.unit, where));
+  };
+  for (const auto& [name, factor] : summary.values) {
+    const std::string tail = "amplification_factor";
+    if (!name.starts_with("critical.") || !name.ends_with(tail)) continue;
+    const std::string speed = name.substr(0, name.size() - tail.size()) + "speed";
+    for (const auto& [other, q] : summary.values)
+      if (other == speed) see(factor, q, "");
+  }
+  for (const io::PeakEntry& p : summary.peaks) see(p.amplification_factor, p.speed, " (" + p.place + ")");
+  if (high.empty()) return;
+  constexpr std::size_t most = 4;
+  const std::size_t left = high.size() > most ? high.size() - most : 0;
+  high.resize(high.size() - left);
+  summary.warnings.push_back(fmt::format(
+      "amplification factors above {:g}: {}{}. So little damping is unusual for a machine that runs through "
+      "or near such a speed: look at the damping of the bearings",
+      high_amplification, fmt::join(high, ", "), left > 0 ? fmt::format(" and {} more", left) : ""));
+}
+
+}  // namespace whirl::study

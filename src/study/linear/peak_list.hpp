@@ -1,0 +1,43 @@
+#pragma once
+// The peaks of a linear response as screen, report and pictures show them.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/linear/response_peaks.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/study/linear/separation.hpp"
+
+namespace whirl::study {
+
+/// Amplification factor from which on a machine is not driven through a resonance without more damping.
+inline constexpr double high_amplification = 30;
+
+/// Where margins are counted from: the operating range of a study, else its operating speed, else the service speed of
+/// the machine. Empty if there is none of these.
+[[nodiscard]] std::optional<deck::Range> operating_range(const std::optional<deck::Range>& range,
+                                                         const std::optional<deck::Quantity>& speed,
+                                                         const std::optional<deck::Quantity>& service);
+
+/// Names of the values of a peak in a summary, and members of its entry.
+struct PeakValue {
+  const char* name;
+  io::Quantity io::PeakEntry::*member;
+};
+[[nodiscard]] const std::vector<PeakValue>& peak_values();
+
+/// The entry of a peak [rad/s, m] with speeds in `unit`; without bars.
+[[nodiscard]] io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::string& unit,
+                                     const std::optional<deck::Range>& operating);
+
+/// Whether a peak keeps its distance from the operating range: "damped, not critical" (API 684: amplification below
+/// 2.5), "too near", "far enough"; "undetermined" where a bar contains the limit. Empty without an operating range, and
+/// where there is no amplification factor.
+[[nodiscard]] std::string verdict_of(const io::PeakEntry& peak);
+
+/// Warns of amplification factors of peaks and critical speeds above high_amplification, in one sentence.
+void warn_of_amplification(io::StudySummary& summary);
+
+}  // namespace whirl::study

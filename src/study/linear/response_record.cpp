@@ -1,0 +1,120 @@
+#include "study/linear/response_record.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "study/bars/film_limit.hpp"
+#include "whirl/deck/units.hpp"
+
+namespace whirl::study {
+
+std::vector<double> pack(const Response& r) {
+  std::vector<double> flat{r.speed};
+  for (const auto* place : {&r.nodes, &r.bearings})
+    for (const NodeMotion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
+  flat.insert(flat.end(), r.films.begin(), r.films.end());
+  return flat;
+}
+
+Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings) {
+  Response r;
+  r.speed = flat[0];
+  for (std::size_t k = 0; k < n_nodes + n_bearings; ++k) {
+    const double* v = flat.data() + 1 + 4 * k;
+    (k < n_nodes ? r.nodes : r.bearings).push_back({{v[0], v[1]}, {v[2], v[3]}});
+  }
+  r.films.assign(flat.end() - static_cast<std::ptrdiff_t>(n_bearings), flat.end());
+  return r;
+}
+
+ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::size_t at) {
+  ResponseCurve of;
+  for (const Response& r : curve) {
+    of.speed.push_back(r.speed);
+    of.height.push_back((r.*places)[at].semi_major());
+  }
+  return of;
+}
+
+void put_operating(const std::vector<std::string>& names, const std::vector<int>& nodes, const Response& r,
+                   io::StudySummary& summary) {
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
+    summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
+  }
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+}
+
+void put_motion(io::Group& g, const std::vector<Response>& curve, Places place, const std::string& text) {
+  const io::Shape shape{curve.size(), (curve.front().*place).size()};
+  std::map<std::string, std::vector<double>> column;
+  for (const Response& r : curve)
+    for (const NodeMotion& m : r.*place) {
+      column["x_amplitude"].push_back(std::abs(m.x));
+      column["x_phase"].push_back(std::arg(m.x));
+      column["y_amplitude"].push_back(std::abs(m.y));
+      column["y_phase"].push_back(std::arg(m.y));
+      column["semi_major"].push_back(m.semi_major());
+      column["semi_minor"].push_back(m.semi_minor());
+    }
+  for (auto& [name, values] : column) {
+    const bool phase = name.ends_with("phase");
+    g.put(name, shape, std::move(values), phase ? "rad" : "m",
+          text + (phase ? ", phase ahead of the shaft angle" : ", 0-peak"));
+  }
+}
+
+namespace {
+
+bool too_thin(double film, double least) {
+  return std::isfinite(film) && (film <= 0 || film < least);
+}
+
+}  // namespace
+
+std::string touched(const Response& r, const system::ShownPlaces& places) {
+  for (std::size_t b = 0; b < r.films.size(); ++b)
+    if (too_thin(r.films[b], places.least_films[b])) return places.names[b];
+  return {};
+}
+
+void put_films(io::Group& group, io::StudySummary& summary, const system::ShownPlaces& places,
+               const std::vector<Response>& curve, const std::string& unit) {
+  std::vector<double> all;
+  std::vector<std::int64_t> answers;
+  for (const Response& r : curve) {
+    const auto films = film_column(r.films, places.names.size());
+    all.insert(all.end(), films.begin(), films.end());
+    answers.push_back(touched(r, places).empty() ? 1 : 0);
+  }
+  group.child("response")
+      .put("answer", answers, "1 where the linear motion leaves every bearing its film; 0: it is no answer");
+  group.child("bearings")
+      .put("film_min", {curve.size(), places.names.size()}, all, "m",
+           "smallest film thickness that the linear motion leaves, at mid-plane of films that do not tilt, not a "
+           "number without a film");
+  for (std::size_t b = 0; b < places.names.size(); ++b) {
+    const Response *worst = nullptr, *first = nullptr, *last = nullptr;
+    for (const Response& r : curve) {
+      if (!std::isfinite(r.films[b])) continue;
+      if (!worst || r.films[b] < worst->films[b]) worst = &r;
+      if (!too_thin(r.films[b], places.least_films[b])) continue;
+      if (!first) first = &r;
+      last = &r;
+    }
+    if (!worst) continue;
+    summary.set("bearing." + places.names[b] + ".film_min", worst->films[b], "m");
+    if (first)
+      summary.warnings.push_back(fmt::format(
+          "the linear motion leaves bearing {} {:.3g} um of film at {:.6g} {}, less than the {:.3g} um below which the "
+          "surfaces touch (minimum_film): no answer between {:.6g} and {:.6g} {}",
+          places.names[b], worst->films[b] * 1e6, deck::from_si(worst->speed, unit), unit, places.least_films[b] * 1e6,
+          deck::from_si(first->speed, unit), deck::from_si(last->speed, unit), unit));
+  }
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,53 @@
+#pragma once
+// What a linear response to unbalance leaves in the results.
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "study/linear/response_peaks.hpp"
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// x = Re(z exp(i angle)) of one place.
+struct NodeMotion {
+  std::complex<double> x, y;
+
+  // z = x + i y is the sum of a forward circle |f| and a backward circle |g|.
+  [[nodiscard]] double forward() const { return std::abs(x + std::complex<double>(0, 1) * y) / 2; }
+  [[nodiscard]] double backward() const { return std::abs(x - std::complex<double>(0, 1) * y) / 2; }
+  [[nodiscard]] double semi_major() const { return forward() + backward(); }
+  [[nodiscard]] double semi_minor() const { return forward() - backward(); }  ///< negative: backward orbit
+};
+
+/// At one speed [rad/s].
+struct Response {
+  double speed = 0;
+  std::vector<NodeMotion> nodes, bearings;
+  std::vector<double> films;  ///< smallest thickness that the linear motion leaves each bearing [m]
+};
+using Places = std::vector<NodeMotion> Response::*;
+
+[[nodiscard]] std::vector<double> pack(const Response& r);
+[[nodiscard]] Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings);
+
+/// Semi-major axes of one place over the speeds.
+[[nodiscard]] ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::size_t at);
+
+/// Puts amplitudes at the operating speed as operating.*.
+void put_operating(const std::vector<std::string>& bearings, const std::vector<int>& nodes, const Response& r,
+                   io::StudySummary& summary);
+/// Puts columns of amplitudes and phases [speed][place].
+void put_motion(io::Group& g, const std::vector<Response>& curve, Places places, const std::string& text);
+
+/// The bearing in which the linear motion leaves less film than the surfaces bear; empty where all have enough.
+[[nodiscard]] std::string touched(const Response& r, const system::ShownPlaces& places);
+/// Puts what the motions leave of the films, marks the speeds at which they leave too little, and warns of these.
+/// Linear motions know no bore: there they are none.
+void put_films(io::Group& group, io::StudySummary& summary, const system::ShownPlaces& places,
+               const std::vector<Response>& curve, const std::string& unit);
+
+}  // namespace whirl::study

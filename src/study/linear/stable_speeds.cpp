@@ -1,0 +1,80 @@
+#include "study/linear/stable_speeds.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+
+#include "whirl/deck/units.hpp"
+
+namespace whirl::study {
+namespace {
+
+// Speeds at which the numbers are counted in any case; a count costs an eigenvalue problem.
+constexpr std::size_t few = 13;
+
+}  // namespace
+
+StableSpeeds::StableSpeeds(std::vector<double> speeds, const Count& count) : speeds_(std::move(speeds)) {
+  const std::size_t n = speeds_.size();
+  std::map<std::size_t, int> counted;  // by place
+  std::vector<std::size_t> next;
+  for (std::size_t k = 0; k < std::min(few, n); ++k) next.push_back(n <= few ? k : k * (n - 1) / (few - 1));
+  while (!next.empty()) {
+    std::vector<double> at;
+    for (const std::size_t k : next) at.push_back(speeds_[k]);
+    const std::vector<int> found = count(at);
+    for (std::size_t i = 0; i < next.size(); ++i) counted[next[i]] = found[i];
+    next.clear();
+    for (auto a = counted.begin(), b = std::next(a); b != counted.end(); ++a, ++b)
+      if (a->second != b->second && b->first - a->first > 1) next.push_back((a->first + b->first) / 2);
+  }
+  for (std::size_t k = 0; k < n; ++k) numbers_.push_back(std::prev(counted.upper_bound(k))->second);
+}
+
+int StableSpeeds::at(double speed) const {
+  const auto found = std::lower_bound(speeds_.begin(), speeds_.end(), speed);
+  if (found == speeds_.end() || *found != speed) return unknown;
+  return numbers_[static_cast<std::size_t>(found - speeds_.begin())];
+}
+
+const char* StableSpeeds::word(int number) {
+  return number > 0 ? "unstable" : number == 0 ? "stable" : "undetermined";
+}
+
+std::vector<StableSpeeds::Stretch> StableSpeeds::stretches() const {
+  std::vector<Stretch> out;
+  for (std::size_t k = 0; k < speeds_.size(); ++k) {
+    if (out.empty() || out.back().stability != word(numbers_[k])) out.push_back({speeds_[k], 0, word(numbers_[k])});
+    out.back().to = speeds_[k];
+  }
+  return out;
+}
+
+void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit) {
+  const auto stretches = stable.stretches();
+  if (stretches.empty()) return;
+  if (stretches.size() == 1) summary.stability = stretches.front().stability + " throughout";
+  std::string verdict;
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const StableSpeeds::Stretch& s = stretches[k];
+    if (s.stability == "stable") continue;
+    const auto shown = [&](double speed) { return fmt::format("{:.6g}", deck::from_si(speed, unit)); };
+    std::string where = s.from == s.to ? "at " + shown(s.from) : "from " + shown(s.from) + " to " + shown(s.to);
+    where += " " + unit;
+    if (k > 0 && s.stability == "unstable" && stretches[k - 1].stability == "stable")
+      where += fmt::format(" (stable at {})", shown(stretches[k - 1].to));
+    verdict += (verdict.empty() ? "" : ", ") + s.stability + " " + where;
+    summary.warnings.push_back(
+        s.stability == "unstable"
+            ? fmt::format(
+                  "the equilibrium is unstable {}: no vibration settles into the linear response there, and its "
+                  "peaks, amplification factors and margins are those of no motion",
+                  where)
+            : fmt::format("whether the equilibrium is stable {} is not known: eigenvalues may be missing", where));
+  }
+  if (stretches.size() > 1) summary.stability = verdict;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,47 @@
+#pragma once
+// At which speeds of a linear study the equilibrium is stable.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "whirl/io/summary.hpp"
+
+namespace whirl::study {
+
+/// Numbers of eigenvalues that grow about the equilibria over rising speeds. They are counted at some of the speeds,
+/// and between two of these that differ by halves: a stretch with another number that lies between two with one number
+/// is not seen.
+class StableSpeeds {
+public:
+  static constexpr int unknown = -1;  ///< eigenvalues may be missing, or could not be computed
+  /// The numbers at some of the speeds.
+  using Count = std::function<std::vector<int>(const std::vector<double>& speeds)>;
+
+  StableSpeeds() = default;
+  /// Of rising speeds. Calls `count` a few times.
+  StableSpeeds(std::vector<double> speeds, const Count& count);
+
+  [[nodiscard]] bool known() const { return !speeds_.empty(); }
+  /// At one of the speeds.
+  [[nodiscard]] int at(double speed) const;
+  /// "stable", "unstable", "undetermined" of a number.
+  [[nodiscard]] static const char* word(int number);
+
+  /// Neighbouring speeds with one word.
+  struct Stretch {
+    double from = 0, to = 0;
+    std::string stability;
+  };
+  [[nodiscard]] std::vector<Stretch> stretches() const;
+
+private:
+  std::vector<double> speeds_;
+  std::vector<int> numbers_;
+};
+
+/// Puts the verdict over the speeds, shown in `unit`, and a warning that names where the equilibrium is unstable or not
+/// known: there no vibration settles into the linear response, and margins mean nothing.
+void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit);
+
+}  // namespace whirl::study

@@ -1,0 +1,141 @@
+#include "study/sense.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/bearing/gas_point.hpp"
+#include "whirl/film/facts.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr double warm = 313.15;  // K, 40 degC: at which oils are named
+
+// Of the fluid in a film with these results: that of a gas where it is densest, that of an oil at its mean temperature.
+struct Fluid {
+  double density, viscosity;
+};
+Fluid fluid_of(const system::Support& s, const film::FilmReport& report) {
+  if (const auto* gas = film::find<film::Gas>(s.film))
+    return {report.max_pressure / (gas->gas_constant * gas->temperature), s.lubricant.viscosity};
+  double viscosity = s.lubricant.viscosity;
+  const auto* thd = film::find<film::Thd>(s.film);
+  if (thd && thd->viscosity && std::isfinite(report.mean_temperature))
+    viscosity = thermal::viscosity(thd->viscosity->law, report.mean_temperature).value;
+  return {s.lubricant.density, viscosity};
+}
+
+bool is_laminar(const film::Options& film) {
+  if (const auto* o = film::find<film::Reynolds>(film)) return o->turbulence == film::Turbulence::laminar;
+  if (const auto* o = film::find<film::Thd>(film)) return o->turbulence == film::Turbulence::laminar;
+  return true;
+}
+
+// What a kind of fluid has; zero is a number that was not given.
+struct Usual {
+  const char* what;
+  double least, most;
+  const char* unit;
+  double to_unit;
+  const char* examples;
+};
+void judge(double value, const Usual& usual, const std::string& name, std::vector<std::string>& lines) {
+  if (value == 0 || (value >= usual.least && value <= usual.most)) return;
+  lines.push_back(fmt::format("{}: a {} of {:.4g} {} is unusual ({}): is its unit right?", name, usual.what,
+                              value * usual.to_unit, usual.unit, usual.examples));
+}
+
+// ISO 3448: its thickest oil, VG 3200, has 2.9 Pa s at 40 degC.
+constexpr Usual liquid_viscosity{"viscosity", 1e-4, 3,
+                                 "mPa s",     1e3,  "water has 0.3 to 1.8 mPa s, oils 2 to 3000 mPa s"};
+constexpr Usual liquid_density{"density", 500, 3000, "kg/m^3", 1, "oils have about 870 kg/m^3, water 1000"};
+constexpr Usual gas_viscosity{"viscosity", 5e-6, 1e-4, "mPa s", 1e3, "air has 0.018 mPa s at 20 degC"};
+
+}  // namespace
+
+double laminar_limit(const film::Geometry& geometry) {
+  return std::min(41.1 * std::sqrt(geometry.radius / geometry.clearance), 2000.0);
+}
+
+double slip_limit(const film::Gas& gas) {
+  return gas.slip == film::Gas::Slip::none ? 0.01 : gas.slip == film::Gas::Slip::first ? 0.1 : 1;
+}
+
+std::vector<std::string> unusual_lubricants(const system::Machine& machine) {
+  std::vector<std::string> lines;
+  for (const system::Bearing& b : machine.bearings) {
+    if (film::facts(b.film).coefficients) continue;
+    const auto* name = std::get_if<std::string>(&b.lubricant);
+    const auto* own = std::get_if<film::Lubricant>(&b.lubricant);
+    if (!own && !machine.lubricants.contains(*name)) continue;
+    const film::Lubricant& fluid = own ? *own : machine.lubricants.at(*name);
+    const std::string place = own ? fmt::format("bearings.{}.lubricant", b.name) : "lubricants." + *name;
+    std::vector<std::string> here;
+    if (film::find<film::Gas>(b.film)) {
+      judge(fluid.viscosity, gas_viscosity, place, here);
+    } else {
+      const auto* thd = film::find<film::Thd>(b.film);
+      if (thd && thd->viscosity)
+        judge(thermal::viscosity(thd->viscosity->law, warm).value, liquid_viscosity,
+              fmt::format("bearings.{}.film.viscosity at 40 degC", b.name), here);
+      else
+        judge(fluid.viscosity, liquid_viscosity, place, here);
+      judge(fluid.density, liquid_density, place, here);
+    }
+    for (std::string& line : here)
+      if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+void put_film_numbers(io::StudySummary& summary, const std::string& head, const system::Support& support,
+                      const film::FilmReport& report, double load, double speed) {
+  const film::Geometry& g = support.geometry;
+  if (g.length > 0) summary.set(head + "specific_load", std::abs(load) / (2 * g.radius * g.length), "Pa");
+  const Fluid fluid = fluid_of(support, report);
+  const double reynolds = fluid.density * std::abs(speed) * g.radius * g.clearance / fluid.viscosity;
+  if (reynolds > 0 && std::isfinite(reynolds)) summary.set(head + "reynolds_number", reynolds, "1");
+  if (const auto* gas = film::find<film::Gas>(support.film))
+    summary.set(head + "knudsen_number",
+                mean_free_path(*gas, support.lubricant.viscosity, gas->ambient) / report.min_thickness, "1");
+}
+
+void warn_of_films(io::StudySummary& summary, const system::Train& train) {
+  const auto value = [&](const std::string& name) -> io::Quantity {
+    const auto at = std::find_if(summary.values.begin(), summary.values.end(),
+                                 [&](const auto& entry) { return entry.first == name; });
+    return at == summary.values.end() ? io::Quantity{} : at->second;
+  };
+  const auto above = [](const io::Quantity& q, double limit) {
+    const auto bar = q.more.find("uncertainty");
+    return q.value - (bar != q.more.end() && std::isfinite(bar->second) ? bar->second : 0) > limit;
+  };
+  for (const system::Support& s : train.supports) {
+    if (!(s.geometry.clearance > 0)) continue;
+    const std::string head = "bearing." + s.name + ".";
+    const auto warn = [&](const std::string& text) { summary.warnings.push_back("bearing " + s.name + ": " + text); };
+    if (const auto q = value(head + "specific_load"); above(q, white_metal_load))
+      warn(fmt::format("the load over its projected area is {:.3g} MPa; white metal bears {:g} MPa (ISO 7902-3)",
+                       q.value * 1e-6, white_metal_load * 1e-6));
+    if (const auto q = value(head + "max_pressure"); above(q, white_metal_pressure))
+      warn(
+          fmt::format("the largest film pressure is {:.3g} MPa; white metal yields at about {:g} MPa at 100 degC "
+                      "(ASTM B23)",
+                      q.value * 1e-6, white_metal_pressure * 1e-6));
+    if (const auto q = value(head + "reynolds_number"); is_laminar(s.film) && above(q, laminar_limit(s.geometry)))
+      warn(fmt::format(
+          "the Reynolds number is {:.4g}, and the film is computed as laminar; vortices or turbulence begin "
+          "at {:.4g}: 'turbulence' of a film of type reynolds or thd counts it",
+          q.value, laminar_limit(s.geometry)));
+    if (const auto* gas = film::find<film::Gas>(s.film))
+      if (const auto q = value(head + "knudsen_number"); above(q, slip_limit(*gas)))
+        warn(fmt::format(
+            "the Knudsen number is {:.3g} where the film is thinnest; its law of slip holds up to {:g}: see "
+            "'slip'",
+            q.value, slip_limit(*gas)));
+  }
+}
+
+}  // namespace whirl::study

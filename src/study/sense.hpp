@@ -1,0 +1,37 @@
+#pragma once
+// Numbers of a machine and its films that are unusual: warnings with numbers, never refusals.
+
+#include <string>
+#include <vector>
+
+#include "whirl/film/response.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/system/options.hpp"
+#include "whirl/system/train.hpp"
+
+namespace whirl::study {
+
+/// What white metal bears. Mean: load over projected area, Pb and Sn alloys, ISO 7902-3. Film: compressive yield point
+/// of tin-based alloys 1 to 3 at 100 degC, 18.3 to 21.7 MPa, ASTM B23.
+inline constexpr double white_metal_load = 5e6, white_metal_pressure = 20e6;  // Pa
+
+/// Reynolds number rho Omega R c/mu above which a film in a bore is not laminar: Taylor's vortices from 41.1 sqrt(R/c)
+/// (Taylor 1923) on, turbulence at about 2000 (San Andres, Modern Lubrication Theory, notes 8).
+[[nodiscard]] double laminar_limit(const film::Geometry& geometry);
+
+/// Knudsen number up to which the film's law of slip holds: 0.01 without slip, 0.1 of first order (Burgdorfer 1959), 1
+/// of second (Hsia and Domoto 1983).
+[[nodiscard]] double slip_limit(const film::Gas& gas);
+
+/// Lubricants whose viscosity or density is that of no fluid of their kind, a line each: a unit may be wrong.
+[[nodiscard]] std::vector<std::string> unusual_lubricants(const system::Machine& machine);
+
+/// Puts specific load [Pa] and Reynolds number of a film with a bore, and the Knudsen number of one of gas, below
+/// `head`.
+void put_film_numbers(io::StudySummary& summary, const std::string& head, const system::Support& support,
+                      const film::FilmReport& report, double load, double speed);
+
+/// Warns of what the values of put_film_numbers() and `max_pressure` say, beyond their bars.
+void warn_of_films(io::StudySummary& summary, const system::Train& train);
+
+}  // namespace whirl::study

@@ -1,0 +1,257 @@
+#include "service.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace whirl::study {
+namespace {
+
+using io::Quantity;
+using io::ServiceFact;
+using io::StudySummary;
+
+constexpr double same = 1e-6;                      // of the speed: two speeds are one
+constexpr double damped = std::numbers::pi / 2.5;  // log decrement of an amplification factor of 2.5 (API 684)
+
+double bar_of(const Quantity& q) {
+  const auto at = q.more.find("uncertainty");
+  return at != q.more.end() && std::isfinite(at->second) ? at->second : 0;
+}
+
+std::map<std::string, double> bar(double error) {
+  return std::isfinite(error) && error > 0 ? std::map<std::string, double>{{"uncertainty", error}}
+                                           : std::map<std::string, double>{};
+}
+
+const Quantity* find(const StudySummary& s, const std::string& name) {
+  const auto at = std::find_if(s.values.begin(), s.values.end(), [&](const auto& v) { return v.first == name; });
+  return at == s.values.end() || !std::isfinite(at->second.value) ? nullptr : &at->second;
+}
+
+// "B3" of "bearing.B3.min_thickness".
+std::optional<std::string> between(const std::string& name, const std::string& head, const std::string& tail) {
+  if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) return std::nullopt;
+  return name.substr(head.size(), name.size() - head.size() - tail.size());
+}
+
+class Collector {
+public:
+  Collector(const deck::Quantity& speed, const io::Group& results) : speed_(speed.value), results_(results) {
+    service_.speed = {deck::from_si(speed.value, speed.unit), speed.unit};
+  }
+
+  void look_at(const StudySummary& s) {
+    if (s.kind == "equilibrium_branch") take_branch(s);
+    if (s.kind == "modes") take_modes(s);
+    if (s.kind == "unbalance_response") take_response(s);
+    if (s.kind == "static") take_static(s);
+    if (s.kind == "cycle_branch") take_cycles(s);
+  }
+
+  io::Service finish() {
+    put_stability();
+    for (const auto* fact :
+         {&threshold_, &decrement_, &below_, &above_, &film_, &pressure_, &temperature_, &vibration_})
+      if (*fact) service_.facts.push_back(**fact);
+    const auto missing = [&](const std::optional<ServiceFact>& fact, const char* what, const char* how) {
+      if (!fact) service_.facts.push_back({what, {}, {}, how, {}});
+    };
+    missing(film_, "thinnest film", "not known: no `static` at this speed gives one");
+    missing(vibration_, "largest vibration", "not known: no `unbalance_response` gives one at this speed");
+    return std::move(service_);
+  }
+
+private:
+  [[nodiscard]] bool is_service(double speed) const { return std::abs(speed - speed_) <= same * speed_; }
+  [[nodiscard]] const io::Group* group_of(const StudySummary& s) const {
+    const std::string name = io::safe_name(s.name);
+    return results_.has_group(name) ? &results_.group(name) : nullptr;
+  }
+  static void keep(std::optional<ServiceFact>& kept, ServiceFact fact, bool largest) {
+    if (kept && (largest ? fact.value.value <= kept->value.value : fact.value.value >= kept->value.value)) return;
+    kept = std::move(fact);
+  }
+  void vote(const std::string& verdict, const std::string& study) {
+    if (verdict.empty()) return;
+    verdicts_.push_back(verdict);
+    voters_.push_back(study);
+  }
+
+  // The stretch of a branch over the speed in which the machine runs, and its distance from the threshold [rad/s].
+  void take_branch(const StudySummary& s) {
+    const io::Group* group = group_of(s);
+    if (!group || !group->has_attribute("parameter") || group->text("parameter") != "speed") return;
+    const Quantity* threshold = find(s, "threshold");
+    bool near = false;
+    if (threshold && threshold->unit == "rad/s") {
+      const double margin = (threshold->value - speed_) / speed_, error = bar_of(*threshold) / speed_;
+      near = std::abs(margin) <= error;
+      keep(threshold_,
+           {"margin in speed to the threshold of stability", {}, {100 * margin, "%", bar(100 * error)}, {}, s.name},
+           false);
+    }
+    std::string verdict;
+    for (const io::StabilityRange& r : s.ranges) {
+      const double here = deck::from_si(speed_, r.unit);
+      if (std::min(r.from, r.to) > here * (1 + same) || here > std::max(r.from, r.to) * (1 + same)) continue;
+      verdict = verdict.empty() || verdict == r.stability ? r.stability : "undetermined";
+    }
+    vote(near ? "undetermined" : verdict, s.name);
+  }
+
+  // The least log decrement: at the speed, or in a straight line between the computed speeds beside it.
+  void take_modes(const StudySummary& s) {
+    struct Least {
+      double speed, decrement, error;
+    };
+    std::vector<Least> least;  // by speed
+    bool grows = false;
+    for (const io::ModeEntry& m : s.modes) {
+      if (m.imag == 0 && m.stability != "diverges") continue;
+      const double at = deck::number_to_si(m.speed, m.speed_unit);
+      const auto error = m.more.find("log_decrement_uncertainty");
+      const Least here{at, m.log_decrement, error == m.more.end() ? io::no_value : error->second};
+      if (is_service(at)) grows |= m.stability == "diverges";
+      if (!std::isfinite(m.log_decrement)) continue;
+      const auto known = std::find_if(least.begin(), least.end(), [&](const Least& l) { return l.speed == at; });
+      if (known == least.end())
+        least.push_back(here);
+      else if (here.decrement < known->decrement)
+        *known = here;
+    }
+    std::sort(least.begin(), least.end(), [](const Least& a, const Least& b) { return a.speed < b.speed; });
+    for (std::size_t k = 0; k < least.size(); ++k) {
+      const Least &b = least[k], &a = k > 0 ? least[k - 1] : b;
+      const bool here = is_service(b.speed);
+      if (!here && !(a.speed < speed_ && speed_ < b.speed)) continue;
+      const double w = here ? 1 : (speed_ - a.speed) / (b.speed - a.speed),
+                   decrement = (1 - w) * a.decrement + w * b.decrement;
+      const double error = here ? b.error : std::max(a.error, b.error);
+      const std::string unit = s.modes.front().speed_unit;
+      const std::string mark = here ? ""
+                                    : fmt::format("between {:.6g} and {:.6g} {}, which were computed",
+                                                  deck::from_si(a.speed, unit), deck::from_si(b.speed, unit), unit);
+      keep(decrement_, {"smallest log decrement", {}, {decrement, "1", bar(error)}, mark, s.name}, false);
+      const bool sure = here || (a.decrement > 0) == (b.decrement > 0);
+      vote(!sure || std::abs(decrement) <= (std::isfinite(error) ? error : 0) ? "undetermined"
+           : decrement > 0 && !grows                                          ? "stable"
+                                                                              : "unstable",
+           s.name);
+      break;
+    }
+    for (const auto& [name, q] : s.values)
+      if (const auto k = between(name, "critical.", ".speed"); k && std::isfinite(q.value)) {
+        const Quantity* delta = find(s, "critical." + *k + ".log_decrement");
+        if (delta && delta->value - bar_of(*delta) > damped) continue;
+        take_critical(q, delta ? fmt::format("log decrement {:.3g}", delta->value) : "", "critical speed", "", s.name);
+      }
+  }
+  // The nearest one on either side of the service speed.
+  void take_critical(const Quantity& q, const std::string& more, const std::string& what, const std::string& place,
+                     const std::string& study) {
+    const double at = deck::number_to_si(q.value, q.unit), margin = (at - speed_) / speed_;
+    ServiceFact fact{what + (at <= speed_ ? " below" : " above"), place, q, {}, study};
+    fact.mark =
+        fmt::format("{:.1f} % from the service speed{}{}", 100 * std::abs(margin), more.empty() ? "" : ", ", more);
+    auto& kept = at <= speed_ ? below_ : above_;
+    if (kept && std::abs(deck::number_to_si(kept->value.value, kept->value.unit) - speed_) <= std::abs(at - speed_))
+      return;
+    kept = std::move(fact);
+  }
+
+  void take_response(const StudySummary& s) {
+    for (const io::PeakEntry& p : s.peaks)
+      if (p.place.starts_with("node ") && p.verdict != "damped, not critical" && std::isfinite(p.speed.value)) {
+        const double factor = p.amplification_factor.value;
+        take_critical(p.speed, std::isfinite(factor) ? fmt::format("amplification {:.3g}", factor) : "", "peak",
+                      p.place, s.name);
+      }
+    const Quantity* at = find(s, "operating_speed");
+    if (!at || !is_service(deck::number_to_si(at->value, at->unit))) return;
+    std::string mark = "linear response, 0-peak";
+    if (const Quantity* count = find(s, "operating_speed.unstable_count")) {
+      vote(count->value > 0 ? "unstable" : count->value == 0 ? "stable" : "undetermined", s.name);
+      if (count->value > 0) mark += ", about an unstable equilibrium";
+    }
+    for (const auto& [name, q] : s.values)
+      if (const auto node = between(name, "operating.node.", ".semi_major"))
+        keep(vibration_, {"largest vibration", "node " + *node, q, mark, s.name}, true);
+  }
+
+  void take_static(const StudySummary& s) {
+    const io::Group* group = group_of(s);
+    if (!group || !group->has_attribute("speed") || !is_service(group->real("speed"))) return;
+    for (const auto& [name, q] : s.values) {
+      if (!std::isfinite(q.value)) continue;
+      if (const auto b = between(name, "bearing.", ".min_thickness")) {
+        const Quantity* least = find(s, "bearing." + *b + ".minimum_film");
+        const bool thin = least && q.value < least->value;
+        keep(film_, {"thinnest film", *b, q, thin ? "below minimum_film" : "", s.name}, false);
+      }
+      if (const auto b = between(name, "bearing.", ".max_pressure"))
+        keep(pressure_, {"highest film pressure", *b, q, {}, s.name}, true);
+      if (const auto b = between(name, "bearing.", ".max_temperature"))
+        keep(temperature_, {"highest film temperature", *b, q, {}, s.name}, true);
+    }
+  }
+
+  // Half of the travel of the journals in a cycle that was asked for at this speed.
+  void take_cycles(const StudySummary& s) {
+    const io::Group* group = group_of(s);
+    if (!group || !group->has_attribute("parameter") || group->text("parameter") != "speed") return;
+    const double here = deck::from_si(speed_, group->text("parameter_unit"));
+    for (const auto& [name, q] : s.values) {
+      const std::size_t place = name.find(".peak_to_peak.");
+      double at = 0;
+      if (!name.starts_with("at.") || place == std::string::npos || q.unit != "m" || !std::isfinite(q.value)) continue;
+      const auto [end, code] = std::from_chars(name.data() + 3, name.data() + place, at);
+      if (code != std::errc() || end != name.data() + place || std::abs(at - here) > same * here) continue;
+      const std::string journal = name.substr(place + 14, name.rfind('.') - place - 14);
+      keep(cycle_,
+           {"largest vibration",
+            journal,
+            {q.value / 2, "m", bar(bar_of(q) / 2)},
+            "cycle, half of peak to peak in " + name.substr(name.rfind('.') + 1),
+            s.name},
+           true);
+    }
+    if (cycle_) keep(vibration_, *cycle_, true);
+  }
+
+  void put_stability() {
+    ServiceFact fact{"stability", {}, {}, "not known: `modes` or `equilibrium_branch` over the speed give it", {}};
+    if (!verdicts_.empty()) {
+      const bool agree =
+          std::all_of(verdicts_.begin(), verdicts_.end(), [&](const auto& v) { return v == verdicts_[0]; });
+      const bool grows = std::find(verdicts_.begin(), verdicts_.end(), "unstable") != verdicts_.end();
+      fact.mark = agree ? verdicts_[0] : grows ? "undetermined: the studies differ" : "undetermined";
+      fact.study = fmt::format("{}", fmt::join(voters_, ", "));
+    }
+    service_.facts.push_back(std::move(fact));
+  }
+
+  double speed_;
+  const io::Group& results_;
+  io::Service service_;
+  std::vector<std::string> verdicts_, voters_;
+  std::optional<ServiceFact> threshold_, decrement_, below_, above_, film_, pressure_, temperature_, vibration_, cycle_;
+};
+
+}  // namespace
+
+io::Service service_of(const deck::Quantity& speed, std::span<const StudySummary> studies, const io::Group& results) {
+  Collector facts(speed, results);
+  for (const StudySummary& s : studies) facts.look_at(s);
+  return facts.finish();
+}
+
+}  // namespace whirl::study
