@@ -9,6 +9,7 @@
 #include "whirl/film/describe.hpp"
 #include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/hinges.hpp"
+#include "whirl/rotor/shaft.hpp"
 #include "whirl/system/options.hpp"
 
 namespace whirl::deck {
@@ -82,7 +83,7 @@ public:
   const Spec* spec() const override { return number_->spec(); }
   Access find(void* value, std::span<const std::string> path) const override {
     auto& mass = *static_cast<system::BalanceMass*>(value);
-    if (mass.of != system::BalanceMass::Of::given) throw InputError("the mass is no number");
+    if (mass.of != system::BalanceMass::Of::given) throw core::InputError("the mass is no number");
     return number_->find(&mass.given, path);
   }
 

@@ -117,9 +117,10 @@ template <class Options>
 std::vector<double> speeds_of(const Options& o) {
   std::vector<double> all;
   const auto add = [&all](const auto& x) {
-    if constexpr (requires { x.from; })
-      all.insert(all.end(), {x.from, x.to});
-    else if constexpr (requires { x.value; })
+    if constexpr (requires { x.from; }) {
+      all.push_back(x.from);
+      all.push_back(x.to);
+    } else if constexpr (requires { x.value; })
       all.push_back(x.value);
     else
       all.push_back(x);

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "study/bars/film_limit.hpp"
+#include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/motion/motion_start.hpp"
