@@ -15,6 +15,7 @@
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
+#include "whirl/study/stop.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 
 namespace whirl::app {
@@ -72,6 +73,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   for (const std::string& line : study::unusual(deck)) text += fmt::format("warning: {}\n", line);
   print(text);
   text.clear();
+  study::stop_after_checkpoints(request.stop_after_checkpoint);
   std::vector<std::string> undelivered;
   try {
     undelivered = study::run(comm, deck, options);

@@ -21,6 +21,7 @@ struct RunRequest {
   bool resume = false;
   bool force = false;
   bool progress = false;
+  int stop_after_checkpoint = 0;  ///< end as a killed run does; 0: never
 };
 
 /// Shows a text at once.

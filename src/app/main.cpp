@@ -113,6 +113,11 @@ core::Exit dispatch(CommandLine line, bool prints) {
                         "go on from the checkpoints in the directory, from the beginning if there are none");
   run_command->add_flag("--force", run.force, "replace results of an earlier run");
   run_command->add_flag("--progress", run.progress, "tell how far the work is");
+  run_command
+      ->add_option("--stop-after-checkpoint", run.stop_after_checkpoint,
+                   "end as if killed once N checkpoints have been written, to try --resume")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   CLI::App* check_command = cli.add_subcommand("check", "check a deck without computing");
   deck_options(check_command, check);
   CLI::App* list_command = cli.add_subcommand("list", "list the kinds of studies");

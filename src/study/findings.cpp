@@ -2,6 +2,7 @@
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/io/checkpoint.hpp"
+#include "whirl/study/stop.hpp"
 
 namespace whirl::study {
 
@@ -63,6 +64,7 @@ bool Findings::agreed(bool word) const {
 
 void Findings::save_checkpoint(const io::Group& state) const {
   io::Checkpoint(checkpoint_).save(state, comm_);
+  checkpoint_written();
 }
 
 bool Findings::has_checkpoint() const {

@@ -5,6 +5,7 @@
 
 #include "study/cycle/cycle_record.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/study/stop.hpp"
 
 namespace whirl::study {
 
@@ -146,13 +147,13 @@ double Pieces::between() const {
 // Saving takes no more than a twentieth of the time. States come first, or work between them would leave them no time;
 // but not before all is repeated that is known of the work behind them.
 bool Pieces::due() const {
-  return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= between());
+  return saves_ && findings_.agreed(saves_at_once() || findings_.seconds() - last_saved_ >= between());
 }
 
 bool Pieces::state_due() const {
   const double now = findings_.seconds();
   return saves_ && !journal_.repeats() &&
-         findings_.agreed(now - last_state_ >= least_seconds && now - last_saved_ >= 20 * cost());
+         findings_.agreed(saves_at_once() || (now - last_state_ >= least_seconds && now - last_saved_ >= 20 * cost()));
 }
 
 void Pieces::save_if_due() {

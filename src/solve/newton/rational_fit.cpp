@@ -1,8 +1,9 @@
 #include "solve/newton/rational_fit.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "whirl/spectral/complex_dense.hpp"
 
 namespace whirl::solve {
 
@@ -97,14 +98,7 @@ void RationalFit::weigh(const MatrixXcd& sketch) {
   // Columns of one length: those of a support beside another sample are long.
   const Eigen::VectorXd lengths = loewner.colwise().norm().transpose().cwiseMax(1e-300);
   loewner = loewner * lengths.cwiseInverse().cast<Complex>().asDiagonal();
-  VectorXcd w;
-  if (loewner.rows() >= columns) {
-    const Eigen::BDCSVD<MatrixXcd> svd(loewner, Eigen::ComputeThinV);
-    w = svd.matrixV().col(columns - 1);
-  } else {
-    const Eigen::BDCSVD<MatrixXcd> svd(loewner, Eigen::ComputeFullV);
-    w = svd.matrixV().col(columns - 1);
-  }
+  VectorXcd w = spectral::least_direction(std::move(loewner));
   w.array() /= lengths.array();
   weights_.assign(w.begin(), w.end());
 }

@@ -1,9 +1,9 @@
 #include "solve/newton/transfer_search.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <Eigen/SparseLU>
 #include <limits>
+
+#include "whirl/spectral/complex_dense.hpp"
 
 namespace whirl::solve {
 
@@ -182,20 +182,20 @@ std::vector<Root> TransferSearch::candidates(const Curve& curve, int points, int
         b.block(i * n, j * lanes, n, lanes) = moments[static_cast<std::size_t>(i + j + shift)];
     return b;
   };
-  const Eigen::BDCSVD<MatrixXcd> svd(hankel(0), Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd s = svd.singularValues();
+  const spectral::Svd svd = spectral::svd(hankel(0));
+  const Eigen::VectorXd& s = svd.sizes;
   Index rank = 0;
   while (rank < s.size() && s(rank) > 1e-12 * s(0)) ++rank;
   std::vector<Root> out;
   if (rank == 0) return out;
-  const MatrixXcd u = svd.matrixU().leftCols(rank);
+  const MatrixXcd u = svd.u.leftCols(rank);
   const MatrixXcd reduced =
-      u.adjoint() * hankel(1) * svd.matrixV().leftCols(rank) * s.head(rank).cwiseInverse().cast<Complex>().asDiagonal();
-  const Eigen::ComplexEigenSolver<MatrixXcd> pairs(reduced);
-  if (pairs.info() != Eigen::Success) return out;
+      u.adjoint() * hankel(1) * svd.v.leftCols(rank) * s.head(rank).cwiseInverse().cast<Complex>().asDiagonal();
+  const spectral::Eigenpairs pairs = spectral::complex_eigenpairs(reduced);
+  if (!pairs.values.allFinite()) return out;
   for (Index k = 0; k < rank; ++k) {
-    const Complex mu = pairs.eigenvalues()(k);
-    Root r{curve.centre + curve.size() * mu, u.topRows(n) * pairs.eigenvectors().col(k)};
+    const Complex mu = pairs.values(k);
+    Root r{curve.centre + curve.size() * mu, u.topRows(n) * pairs.vectors.col(k)};
     if (r.lambda.imag() < -1e-9 * ellipse_.size() || ellipse_.level(r.lambda) > 1.3 || r.motion.norm() == 0) continue;
     if (std::hypot(mu.real() * curve.size() / curve.along, mu.imag() * curve.size() / curve.across) > 1.5) continue;
     r.motion.normalize();

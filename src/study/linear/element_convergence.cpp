@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +15,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/shaft.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/complex_dense.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
@@ -34,7 +33,7 @@ system::Train divided(system::Train train, int parts, rotor::Element element) {
 
 template <class M>
 double condition_number(const M& matrix) {
-  const auto sizes = Eigen::BDCSVD<M>(matrix).singularValues();
+  const Eigen::VectorXd sizes = spectral::singular_values(matrix);
   return sizes(0) / sizes(sizes.size() - 1);
 }
 

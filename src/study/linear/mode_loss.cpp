@@ -1,6 +1,5 @@
 #include "study/linear/mode_loss.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
@@ -12,6 +11,7 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/spectral/complex_dense.hpp"
 
 namespace whirl::study {
 namespace {
@@ -120,11 +120,11 @@ void part(const Sparse& a, const Sparse& b, double eta, std::span<Vibration> tog
   Eigen::SparseLU<Sparse> lu(a + beside * b);
   if (lu.info() != Eigen::Success) throw core::NotConverged("modes with loss: the matrix beside them is singular");
   const Eigen::MatrixXcd w = lu.solve(Eigen::MatrixXcd(b * u));
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> small(u.householderQr().solve(w));
+  const spectral::Eigenpairs small = spectral::complex_eigenpairs(u.householderQr().solve(w));
   for (Eigen::Index k = 0; k < n; ++k) {
     Vibration& v = together[static_cast<std::size_t>(k)];
-    v.lambda = beside - 1.0 / small.eigenvalues()(k);
-    v.shape = (u * small.eigenvectors().col(k)).normalized();
+    v.lambda = beside - 1.0 / small.values(k);
+    v.shape = (u * small.vectors.col(k)).normalized();
   }
 }
 

@@ -19,6 +19,7 @@
 #include "study/motion/plane.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/study/stop.hpp"
 #include "whirl/transient/integrator.hpp"
 
 namespace whirl::study {
@@ -145,7 +146,7 @@ private:
   void save() {
     if (!options_.checkpoint) return;
     // At most once a second; rank 0 decides for all.
-    int due = context_.results.seconds() - last_saved_ >= 1;
+    int due = saves_at_once() || context_.results.seconds() - last_saved_ >= 1;
     MPI_Bcast(&due, 1, MPI_INT, 0, context_.comm);
     if (!due) return;
     io::Group state;

@@ -14,6 +14,7 @@
 #include "whirl/io/checkpoint.hpp"
 #include "whirl/io/hdf5.hpp"
 #include "whirl/study/deck.hpp"
+#include "whirl/study/stop.hpp"
 
 namespace whirl::study {
 namespace {
@@ -78,6 +79,7 @@ public:
       io::Checkpoint(path_).save(state());
       io::Checkpoint(running_path_).remove();
     });
+    checkpoint_written();
   }
   [[nodiscard]] const io::Group& studies() const override { return root_.group("studies"); }
   [[nodiscard]] std::span<const io::StudySummary> summaries() const override { return summaries_; }
