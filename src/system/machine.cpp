@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "whirl/film/thickness.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -31,6 +32,43 @@ std::array<double, 2> lateral(const Gravity& gravity) {
 
 std::optional<std::size_t> find_bearing(const Machine& m, std::string_view name) {
   return position(m.bearings, name);
+}
+
+std::optional<std::size_t> find_element(const Machine& m, std::string_view name) {
+  return position(m.elements, name);
+}
+
+std::vector<int> support_nodes(const Machine& m) {
+  std::set<int> nodes;
+  for (const Bearing& b : m.bearings) nodes.insert(b.node);
+  for (const Element& e : m.elements)
+    if (holds_shaft(e)) nodes.insert(e.node);
+  return {nodes.begin(), nodes.end()};
+}
+
+std::vector<int> acting_nodes(const Machine& m) {
+  std::set<int> nodes;
+  for (const Bearing& b : m.bearings) nodes.insert(b.node);
+  for (const StaticLoad& l : m.loads) nodes.insert(l.node);
+  for (const Element& e : m.elements) {
+    nodes.insert(e.node);
+    if (e.to_node) nodes.insert(*e.to_node);
+  }
+  return {nodes.begin(), nodes.end()};
+}
+
+std::vector<int> slope_nodes(const Machine& m) {
+  std::set<int> nodes;
+  for (const Bearing& b : m.bearings)
+    if (film::facts(b.film).tilts) nodes.insert(b.node);
+  for (const StaticLoad& l : m.loads)
+    if (l.moment) nodes.insert(l.node);
+  for (const Element& e : m.elements) {
+    if (!sees_slopes(e)) continue;
+    nodes.insert(e.node);
+    if (e.to_node) nodes.insert(*e.to_node);
+  }
+  return {nodes.begin(), nodes.end()};
 }
 
 std::optional<std::size_t> find_unbalance(const Machine& m, std::string_view name) {
@@ -106,20 +144,17 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
   t.gravity_x = lateral(m.gravity)[0];
   t.gravity = -lateral(m.gravity)[1];
   t.loads = m.loads;
-  const auto keep_slopes = [&t](int node) {
-    std::vector<int>& slopes = t.rotor.reduction.slopes;
-    if (t.rotor.reduction.type != rotor::Reduction::Type::none &&
-        std::find(slopes.begin(), slopes.end(), node) == slopes.end())
-      slopes.push_back(node);
-  };
+  t.elements = m.elements;
+  t.rest = m.rest;
+  t.held = m.held;
+  // What acts on slopes no reduction may take away.
+  if (t.rotor.reduction.type != rotor::Reduction::Type::none) t.rotor.reduction.slopes = slope_nodes(m);
   for (const Bearing& b : m.bearings) {
     Support s;
     s.name = b.name;
     s.node = b.node;
     s.elevation = b.elevation;
     s.slope = b.slope;
-    // A film that tilts couples to slopes, which no reduction may then take away.
-    if (film::facts(b.film).tilts) keep_slopes(b.node);
     if (b.geometry) s.geometry = *b.geometry;
     s.film = b.film;
     if (const auto* own = std::get_if<film::Lubricant>(&b.lubricant))
@@ -139,11 +174,8 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
     }
     t.supports.push_back(s);
   }
-  for (const StaticLoad& l : m.loads)
-    if (l.moment) keep_slopes(l.node);
   if (m.rotor.element == rotor::Element::timoshenko_hermitian) {
-    for (const Bearing& b : m.bearings) t.rotor.joints.push_back(b.node);
-    for (const StaticLoad& l : m.loads) t.rotor.joints.push_back(l.node);
+    for (const int node : acting_nodes(m)) t.rotor.joints.push_back(node);
     for (const Unbalance& u : m.unbalance)
       for (const UnbalanceMass& x : unbalance_masses(m, u)) t.rotor.joints.push_back(x.node);
   }

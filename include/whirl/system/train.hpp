@@ -2,12 +2,14 @@
 // A machine with every name resolved and every number in SI: what the equations are made of.
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "whirl/film/options.hpp"
 #include "whirl/rotor/options.hpp"
+#include "whirl/system/element.hpp"
 
 namespace whirl::system {
 
@@ -45,13 +47,20 @@ struct StaticLoad {
   friend bool operator==(const StaticLoad&, const StaticLoad&) = default;
 };
 
+class RestFinder;
+
 struct Train {
   rotor::Options rotor;
   double gravity = 9.81;  ///< along -y [m/s^2]
   double gravity_x = 0;   ///< along x [m/s^2]
   std::vector<StaticLoad> loads;
   std::vector<Support> supports;
+  std::vector<Element> elements;
   std::vector<UnbalanceMass> unbalance;
+  /// Finds the static equilibrium about which elements act that carry no static load; machines whose films are all
+  /// linear need none.
+  const RestFinder* rest = nullptr;
+  std::shared_ptr<HeldSpeeds> held{};  ///< where elements note speeds beyond their tables; null: nowhere
 };
 
 }  // namespace whirl::system

@@ -85,10 +85,18 @@ void ScaledPoint::refresh_speed() {
   if (!structure_) return;
   const Index n = structure_->size();
   const VectorXd rows = residual_scale_.head(n).cwiseInverse();
-  if (sparse_)
-    scale(structure_->l0(), rows, state_scale_.head(n), thin_.l0);
-  else
-    scale(structure_->l0(), rows, state_scale_.head(n), dense_.l0);
+  const VectorXd columns = state_scale_.head(n);
+  if (sparse_) {
+    scale(structure_->l0(), rows, columns, thin_.l0);
+    scale(structure_->l1(), rows, columns, thin_.l1);
+  } else {
+    scale(structure_->l0(), rows, columns, dense_.l0);
+    // Masses of few machines follow the speed: at the same places.
+    const problem::SparseBlock& l1 = structure_->l1();
+    for (Index j = 0; j < l1.cols(); ++j)
+      for (problem::SparseBlock::InnerIterator it(l1, j); it; ++it)
+        dense_.l1(it.row(), j) = rows(it.row()) * it.value() * columns(j);
+  }
 }
 
 void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
