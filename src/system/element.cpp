@@ -125,6 +125,9 @@ void describe(deck::Description<Element>& d) {
         "whether it acts on the machine at rest. One that does not acts on the motion about the static equilibrium "
         "without it; 'support' and 'other' do if not given, 'seal' and 'coupling' do not");
   matrix("stiffness", &Element::stiffness, "N/m", "K: xx, xy, yx, yy of force = -K d - C d' - M d''");
+  d.add("cross_coupling", &Element::cross_coupling, "N/m", any,
+        "Q, which adds to K_xy and is taken from K_yx: a positive one drives forward whirl")
+      .continuable();
   matrix("damping", &Element::damping, "N s/m", "C, likewise");
   matrix("mass", &Element::mass, "kg", "M, likewise: the added mass of the fluid");
   d.add("slopes", &Element::slopes,
@@ -177,6 +180,8 @@ Coefficients constant_of(const Element& e) {
     put(of.tilt, 2, 2, to);
   };
   fill(e.stiffness, slopes.stiffness, out.stiffness);
+  out.stiffness[1] += e.cross_coupling;
+  out.stiffness[4] -= e.cross_coupling;
   fill(e.damping, slopes.damping, out.damping);
   fill(e.mass, slopes.mass, out.mass);
   return out;

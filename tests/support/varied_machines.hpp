@@ -66,6 +66,7 @@ inline std::vector<system::Element> varied_elements() {
   seal.role = system::Role::seal;
   seal.stiffness = {5e6, 2e6, 0, 0};
   seal.mass = {0, 0, 0, 12};
+  seal.cross_coupling = 1e6;
   seal.table = {{.speed = 100, .k_xx = 1e6, .k_yy = 1e6, .c_xx = 1e3, .c_ab = 20, .m_xx = 5},
                 {.speed = 300, .k_xx = 3e6, .k_yy = 2e6, .c_xx = 1e3, .c_ab = 30, .m_xx = 6},
                 {.speed = 500, .k_xx = 6e6, .k_yy = 2e6, .c_xx = 2e3, .c_ab = 60, .m_xx = 8}};

@@ -81,6 +81,7 @@ struct Element {
   Role role = Role::other;
   std::optional<bool> static_load;    ///< carried or not; by its role if not given
   std::array<double, 4> stiffness{};  ///< N/m, xx xy yx yy
+  double cross_coupling = 0;          ///< Q [N/m]: K_xy += Q, K_yx -= Q
   std::array<double, 4> damping{};    ///< N s/m
   std::array<double, 4> mass{};       ///< kg
   std::optional<SlopeTerms> slopes;   ///< what slopes feel and do

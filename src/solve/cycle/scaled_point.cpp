@@ -86,17 +86,14 @@ void ScaledPoint::refresh_speed() {
   const Index n = structure_->size();
   const VectorXd rows = residual_scale_.head(n).cwiseInverse();
   const VectorXd columns = state_scale_.head(n);
-  if (sparse_) {
-    scale(structure_->l0(), rows, columns, thin_.l0);
-    scale(structure_->l1(), rows, columns, thin_.l1);
-  } else {
-    scale(structure_->l0(), rows, columns, dense_.l0);
-    // Masses of few machines follow the speed: at the same places.
-    const problem::SparseBlock& l1 = structure_->l1();
-    for (Index j = 0; j < l1.cols(); ++j)
-      for (problem::SparseBlock::InnerIterator it(l1, j); it; ++it)
-        dense_.l1(it.row(), j) = rows(it.row()) * it.value() * columns(j);
-  }
+  const auto scaled = [&](auto& blocks) {
+    scale(structure_->l0(), rows, columns, blocks.l0);
+    scale(structure_->l1(), rows, columns, blocks.l1);
+  };
+  if (sparse_)
+    scaled(thin_);
+  else
+    scaled(dense_);
 }
 
 void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
