@@ -69,7 +69,7 @@ void check_names(const Deck& deck, const deck::Report& r) {
 // A shaft in two bearings or other supports at least, which leave no part of it free to move.
 void check_supports(const system::Machine& machine, const deck::Report& r) {
   const std::vector<int> nodes = system::support_nodes(machine);
-  if (nodes.size() < 2) return r.fail("bearings", "a shaft needs at least two bearings");
+  if (nodes.size() < 2) return r.fail("bearings", "a shaft needs bearings, or elements that are supports, at two nodes at least");
   std::vector<int> slopes;
   for (const system::Bearing& b : machine.bearings)
     if (film::facts(b.film).tilts) slopes.push_back(b.node);

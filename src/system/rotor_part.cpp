@@ -306,7 +306,13 @@ void RotorPart::speed_derivative(const Moment& at, double* f) const {
 }
 
 void RotorPart::count_entries(std::span<PetscInt> count) const {
-  constexpr PetscInt of_films = 12;
+  // A journal and its slopes, displacements and velocities, and the pedestals of all bearings at one node.
+  PetscInt pedestals = 1;
+  for (const Support& s : train_.supports)
+    pedestals = std::max<PetscInt>(
+        pedestals, std::count_if(train_.supports.begin(), train_.supports.end(),
+                                 [&s](const Support& t) { return t.has_pedestal && t.node == s.node; }));
+  const PetscInt of_films = 8 + 4 * pedestals;
   for (PetscInt i = 0; i < rows(); ++i) {
     PetscInt total = i % 2 == 0 ? of_films : 0;
     for (const core::Matrix* m : {&matrices_.rates, &matrices_.at_rest, &matrices_.turning}) {
