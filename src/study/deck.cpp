@@ -69,7 +69,8 @@ void check_names(const Deck& deck, const deck::Report& r) {
 // A shaft in two bearings or other supports at least, which leave no part of it free to move.
 void check_supports(const system::Machine& machine, const deck::Report& r) {
   const std::vector<int> nodes = system::support_nodes(machine);
-  if (nodes.size() < 2) return r.fail("bearings", "a shaft needs bearings, or elements that are supports, at two nodes at least");
+  if (nodes.size() < 2)
+    return r.fail("bearings", "a shaft needs bearings, or elements that are supports, at two nodes at least");
   std::vector<int> slopes;
   for (const system::Bearing& b : machine.bearings)
     if (film::facts(b.film).tilts) slopes.push_back(b.node);
@@ -96,7 +97,6 @@ public:
 Deck::Deck() {
   static const ByNewton by_newton;
   machine.rest = &by_newton;
-  machine.held = std::make_shared<system::HeldSpeeds>();
 }
 
 void describe(deck::Description<Limits>& d) {
@@ -170,8 +170,9 @@ std::vector<std::string> warnings(const Deck& d) {
   constexpr std::size_t enough = 5;
   for (const system::Element& e : d.machine.elements)
     if (!e.table.empty() && e.table.size() < enough)
-      all.push_back(fmt::format("element {}: its table has {} rows; with fewer than {} the curve between them is a guess",
-                                e.name, e.table.size(), enough));
+      all.push_back(
+          fmt::format("element {}: its table has {} rows; with fewer than {} the curve between them is a guess", e.name,
+                      e.table.size(), enough));
   const std::vector<std::string> own = all;
   for (const auto& s : d.studies) {
     const auto* sweep = dynamic_cast<const Sweep*>(s.get());

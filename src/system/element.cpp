@@ -6,6 +6,7 @@
 
 #include "whirl/core/error.hpp"
 #include "whirl/deck/description.hpp"
+#include "whirl/film/describe.hpp"
 
 namespace whirl::system {
 
@@ -19,13 +20,6 @@ std::span<const deck::Name<Role>> names(Role) {
       {Role::support, "support",
        "holds the shaft as a bearing does: studies that put it on springs, pins or rigid ground do so here as well"},
       {Role::other, "other", "anything else: carries static load unless told"}};
-  return table;
-}
-
-std::span<const deck::Name<Beyond>> names(Beyond) {
-  static constexpr deck::Name<Beyond> table[] = {
-      {Beyond::refuse, "refuse", "the machine is unknown there: a study ends, or leaves out the speed"},
-      {Beyond::hold, "hold", "the values of the last row hold, and the results warn of it"}};
   return table;
 }
 
@@ -134,7 +128,7 @@ void describe(deck::Description<Element>& d) {
         "what slopes of the shaft add to these: with it K, C and M are 4 x 4, by x, y, dx/dz, dy/dz");
   d.table("table", &Element::table, "coefficients over the speed, which add to those; five rows or more are wanted");
   d.add("interpolation", &Element::interpolation, "between the rows of the table");
-  d.add("extrapolate", &Element::extrapolate, "what holds beyond the rows of the table");
+  d.add("extrapolate", &Element::extrapolate, "coefficients at speeds beyond the table");
   d.check([](const Element& e, const deck::Report& r) {
     if (e.to_node && e.to_pedestal) r.fail("to_pedestal", "an element has one other end: 'to_node' or 'to_pedestal'");
     if (e.to_node && *e.to_node == e.node) r.fail("to_node", "an element stands between two nodes, not one");
@@ -190,7 +184,7 @@ Coefficients constant_of(const Element& e) {
 }  // namespace
 
 ElementCurve::ElementCurve(const Element& e)
-    : name_(e.name), constant_(constant_of(e)), hold_(e.extrapolate == Beyond::hold) {
+    : name_(e.name), constant_(constant_of(e)), hold_(e.extrapolate == film::Linear::Beyond::hold) {
   std::vector<double> speeds, values;
   for (const ElementAt& row : e.table) {
     speeds.push_back(row.speed);
@@ -200,7 +194,7 @@ ElementCurve::ElementCurve(const Element& e)
                        e.interpolation == Between::linear ? core::Curve::Between::linear : core::Curve::Between::cubic);
 }
 
-ElementCurve::At ElementCurve::at(double speed, HeldSpeeds* held) const {
+ElementCurve::At ElementCurve::at(double speed) const {
   At out{constant_, {}};
   if (curve_.empty()) return out;
   const double low = curve_.first(), high = curve_.last(), rounding = 1e-9 * high;
@@ -208,9 +202,8 @@ ElementCurve::At ElementCurve::at(double speed, HeldSpeeds* held) const {
   if (beyond && !hold_)
     throw core::DomainError(
         fmt::format("element {}: its table reaches from {:.6g} to {:.6g} rad/s, and the speed is {:.6g} rad/s; "
-                    "'extrapolate: hold' keeps the values of the last row beyond it",
+                    "'extrapolate: hold' keeps the values of the nearest end",
                     name_, low, high, speed));
-  if (beyond && held) held->add(name_, low, high, speed);
   std::array<double, std::size(cells)> value{}, slope{};
   curve_.at(beyond ? speed : std::clamp(speed, low, high), value, slope);
   Coefficients::Matrix* const to[] = {&out.value.stiffness, &out.value.damping, &out.value.mass};
@@ -219,27 +212,6 @@ ElementCurve::At ElementCurve::at(double speed, HeldSpeeds* held) const {
     (*to[k / 16])[k % 16] += value[k];
     (*by[k / 16])[k % 16] = slope[k];
   }
-  return out;
-}
-
-void HeldSpeeds::add(const std::string& element, double first, double last, double speed) {
-  const auto known = std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.element == element; });
-  if (known == rows_.end()) return rows_.push_back({element, first, last, speed, speed});
-  known->lowest = std::min(known->lowest, speed);
-  known->highest = std::max(known->highest, speed);
-}
-
-std::vector<std::string> HeldSpeeds::take() {
-  std::vector<std::string> out;
-  for (const Row& r : rows_)
-    out.push_back(fmt::format(
-        "element {}: its table reaches from {:.6g} to {:.6g} rad/s, and speeds {} were asked for: "
-        "the values of the last row were held there",
-        r.element, r.first, r.last,
-        r.lowest < r.first && r.highest > r.last ? fmt::format("from {:.6g} to {:.6g} rad/s", r.lowest, r.highest)
-        : r.lowest < r.first                     ? fmt::format("down to {:.6g} rad/s", r.lowest)
-                                                 : fmt::format("up to {:.6g} rad/s", r.highest)));
-  rows_.clear();
   return out;
 }
 

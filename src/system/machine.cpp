@@ -146,7 +146,6 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
   t.loads = m.loads;
   t.elements = m.elements;
   t.rest = m.rest;
-  t.held = m.held;
   // What acts on slopes no reduction may take away.
   if (t.rotor.reduction.type != rotor::Reduction::Type::none) t.rotor.reduction.slopes = slope_nodes(m);
   for (const Bearing& b : m.bearings) {

@@ -2,7 +2,6 @@
 // Linear elements that are no bearings: seals, aerodynamic cross-coupling, springs to the ground or between nodes.
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "whirl/core/curve.hpp"
+#include "whirl/film/linear.hpp"
 
 namespace whirl::deck {
 template <class S>
@@ -25,9 +25,7 @@ namespace whirl::system {
 enum class Role { seal, coupling, support, other };
 [[nodiscard]] std::span<const deck::Name<Role>> names(Role);
 
-/// What holds beyond the rows of a table.
-enum class Beyond { refuse, hold };
-[[nodiscard]] std::span<const deck::Name<Beyond>> names(Beyond);
+/// How a table goes on between its rows.
 enum class Between { cubic, linear };
 [[nodiscard]] std::span<const deck::Name<Between>> names(Between);
 
@@ -87,7 +85,7 @@ struct Element {
   std::optional<SlopeTerms> slopes;   ///< what slopes feel and do
   std::vector<ElementAt> table = {};  ///< by rising speed, added to those
   Between interpolation = Between::cubic;
-  Beyond extrapolate = Beyond::refuse;
+  film::Linear::Beyond extrapolate = film::Linear::Beyond::none;
   friend bool operator==(const Element&, const Element&) = default;
 };
 
@@ -105,9 +103,6 @@ void describe(deck::Description<Element>& d);
 /// A support between a node and the ground or a pedestal: studies see it where they look for what holds the shaft.
 [[nodiscard]] bool holds_shaft(const Element& element);
 
-/// Speeds beyond their tables at which elements held the values of the last row: what a study warns of.
-class HeldSpeeds;
-
 /// The coefficients of an element over the speed.
 class ElementCurve {
 public:
@@ -117,29 +112,14 @@ public:
   struct At {
     Coefficients value, by_speed;
   };
-  /// At a speed [rad/s]. Throws core::DomainError beyond the table of an element that does not hold its last row; one
-  /// that does is noted in `held`, if given.
-  [[nodiscard]] At at(double speed, HeldSpeeds* held) const;
+  /// At a speed [rad/s]. Throws core::DomainError beyond a table that does not hold its ends.
+  [[nodiscard]] At at(double speed) const;
 
 private:
   std::string name_;
   Coefficients constant_;
   core::Curve curve_;
   bool hold_;
-};
-
-class HeldSpeeds {
-public:
-  void add(const std::string& element, double first, double last, double speed);
-  /// A sentence for each element, and forgets them.
-  [[nodiscard]] std::vector<std::string> take();
-
-private:
-  struct Row {
-    std::string element;
-    double first, last, lowest, highest;
-  };
-  std::vector<Row> rows_;
 };
 
 }  // namespace whirl::system

@@ -90,7 +90,6 @@ struct Machine : Others {
   std::vector<Element> elements;       ///< in the order of the deck
   std::vector<Unbalance> unbalance;    ///< in the order of the deck
   const RestFinder* rest = nullptr;    ///< as Train::rest; not of the deck
-  std::shared_ptr<HeldSpeeds> held{};  ///< as Train::held; not of the deck
 };
 
 void describe(deck::Description<Pedestal>& d);

@@ -2,7 +2,6 @@
 // A machine with every name resolved and every number in SI: what the equations are made of.
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,7 +59,6 @@ struct Train {
   /// Finds the static equilibrium about which elements act that carry no static load; machines whose films are all
   /// linear need none.
   const RestFinder* rest = nullptr;
-  std::shared_ptr<HeldSpeeds> held{};  ///< where elements note speeds beyond their tables; null: nowhere
 };
 
 }  // namespace whirl::system
