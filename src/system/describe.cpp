@@ -302,7 +302,7 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
     if (!u.rotor.empty() && std::find(rotors.begin(), rotors.end(), u.rotor) == rotors.end())
       r.fail(path + ".rotor",
              fmt::format("there is no rotor '{}'{}", u.rotor, deck::did_you_mean_one_of(u.rotor, rotors)));
-    else if (u.grade && u.mass.of == BalanceMass::Of::span && !enclosing_bearings(m, u.rotor))
+    else if (u.grade && u.mass.of == BalanceMass::Of::span && !enclosing_supports(m, u.rotor))
       r.fail(path + ".mass", u.rotor.empty()
                                  ? "the middle of the shaft does not lie between two bearings"
                                  : fmt::format("the middle of rotor '{}' does not lie between two bearings", u.rotor));

@@ -98,7 +98,7 @@ std::vector<int> unbalance_nodes(const Machine& m, std::string_view name) {
   return nodes;
 }
 
-std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, std::string_view rotor) {
+std::optional<std::array<int, 2>> enclosing_supports(const Machine& m, std::string_view rotor) {
   const std::vector<double> z = rotor::node_positions(m.rotor);
   double from = z.back(), to = z.front();
   for (std::size_t i = 0; i < m.rotor.segments.size(); ++i) {
@@ -107,15 +107,12 @@ std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, s
     to = std::max(to, z[i + 1]);
   }
   if (from >= to) return {};
-  std::vector<std::size_t> order(m.bearings.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return m.bearings[a].node < m.bearings[b].node; });
-  auto position_of = [&](std::size_t bearing) { return z.at(static_cast<std::size_t>(m.bearings[bearing].node - 1)); };
+  const std::vector<int> nodes = support_nodes(m);
+  const auto position_of = [&](int node) { return z.at(static_cast<std::size_t>(node - 1)); };
   const double middle = (from + to) / 2;
-  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
-    if (m.bearings[order[k + 1]].node > static_cast<int>(z.size())) return {};
-    if (position_of(order[k]) < middle && middle <= position_of(order[k + 1])) return {{order[k], order[k + 1]}};
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+    if (nodes[k + 1] > static_cast<int>(z.size())) return {};
+    if (position_of(nodes[k]) < middle && middle <= position_of(nodes[k + 1])) return {{nodes[k], nodes[k + 1]}};
   }
   return {};
 }
@@ -123,9 +120,9 @@ std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, s
 double graded_mass(const Machine& m, const Unbalance& u) {
   if (u.mass.of == BalanceMass::Of::given) return u.mass.given;
   if (u.mass.of == BalanceMass::Of::rotor) return rotor::mass_of(m.rotor, u.rotor);
-  const auto pair = enclosing_bearings(m, u.rotor);
+  const auto pair = enclosing_supports(m, u.rotor);
   core::require(pair.has_value(), "an unbalance whose rotor does not lie between two bearings was not refused");
-  return rotor::mass_between(m.rotor, m.bearings[(*pair)[0]].node, m.bearings[(*pair)[1]].node);
+  return rotor::mass_between(m.rotor, (*pair)[0], (*pair)[1]);
 }
 
 std::vector<UnbalanceMass> unbalance_masses(const Machine& m, const Unbalance& u) {

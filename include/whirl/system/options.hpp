@@ -127,10 +127,9 @@ inline constexpr std::string_view unbalance_of_discs = "discs";
 /// Nodes on which the unbalance `name` acts, or its discs stand; empty if there is none.
 [[nodiscard]] std::vector<int> unbalance_nodes(const Machine& machine, std::string_view name);
 
-/// Positions in order of nodes of the two neighbouring bearings between which the middle of rotor `name` lies (of the
-/// whole shaft if it is empty); empty if there is no such rotor or no such pair.
-[[nodiscard]] std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& machine,
-                                                                           std::string_view rotor);
+/// The two neighbouring nodes of support_nodes() between which the middle of rotor `name` lies (of the whole shaft if
+/// it is empty); empty if there is no such rotor or no such pair.
+[[nodiscard]] std::optional<std::array<int, 2>> enclosing_supports(const Machine& machine, std::string_view rotor);
 
 /// M of an unbalance with a grade [kg], for a machine that was checked.
 [[nodiscard]] double graded_mass(const Machine& machine, const Unbalance& unbalance);
