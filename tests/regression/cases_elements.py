@@ -51,20 +51,12 @@ def pump(h):
         same(h, f"load on {ranks} ranks", value(r["at speed"], "load.DE"), value(s["at speed"], "load.DE"), 1e-7)
 
 
-def forward(study, speed):
-    """The forward mode with the least log decrement near the operating speed."""
-    found = [m for m in study["modes"] if m["whirl"] == "forward" and m["imag"] > 100]
-    return min(found, key=lambda m: m["log_decrement"])
-
-
 def level_1(h):
     """API level I: the log decrement over the cross-coupling at mid-span, and the cross-coupling at which it is zero."""
     s = h.run(deck(h, "level_1"), "level 1", launcher=[])
-    h.close("log decrement, Q = 0", forward(s["modes"], 7500)["log_decrement"], 0.0438, 5e-5)
-    for q, wanted in (("1e6", 0.0052), ("2e6", -0.0334)):
-        only = [f"elements.Q.cross_coupling={q} N/m", "studies=[{modes: {name: modes, speeds: [7500 rpm], count: 3}}]"]
-        h.close(f"log decrement, Q = {q} N/m", forward(h.run(deck(h, "level_1"), q, only, launcher=[])["modes"], 7500)["log_decrement"], wanted, 5e-5)
-    h.true("the sweep over Q", s["Q"]["status"] == "completed", s["Q"]["status"])
+    column = {c["name"]: c["values"] for c in s["Q"]["columns"]}
+    for q, found, wanted in zip((0, 1e6, 2e6), column["modes.at.7500.first_forward.log_decrement"], (0.0438, 0.0052, -0.0334), strict=True):
+        h.close(f"log decrement, Q = {q:g} N/m", found, wanted, 5e-5)
     hopf = [b for b in s["Q_0"]["bifurcations"] if b["type"] == "hopf"]
     h.true("one Hopf point over Q", len(hopf) == 1)
     h.close("Q_0 [N/m]", hopf[0]["value"] if hopf else None, 1.14e6, 5e3)
@@ -79,8 +71,8 @@ def node(h):
     for a, b in zip(s["modes"]["modes"], sum_of["modes"]["modes"], strict=True):
         same(h, "frequency [rad/s]", a["imag"], b["imag"], 1e-8)
         h.close("log decrement", a["log_decrement"], b["log_decrement"], 1e-8)
-    for study, key in (("pinned", "frequency.1"), ("map", "softest.forward.1"), ("map", "stiffest.backward.2")):
-        same(h, f"{study}, {key}", value(s[study], key), value(sum_of[study], key))
+    same(h, "pinned, frequency.1", value(s["pinned"], "frequency.1"), value(sum_of["pinned"], "frequency.1"))
+    h.true("each bearing has its spring in the map", value(s["map"], "softest.forward.1") > 1.01 * value(sum_of["map"], "softest.forward.1"))
     h.close("weight on three bearings [N]", sum(value(s["static"], f"load.{b}") for b in ("DE", "NDE", "second")), value(s["static"], "mass.total") * 9.81, 1e-3)
     h.close("no load on a seal [N]", value(s["static"], "element.seal.force.y"), 0, 1e-6)
 
