@@ -51,6 +51,39 @@ def draw_bearings(axis, deck, place, low, high):
         axis.annotate(name, (at, low), xytext=(0, -8), textcoords="offset points", ha="center", va="top", fontsize=8.5, color=INK)
 
 
+MARKERS = {"seal": "D", "coupling": "o", "support": "^", "other": "s"}
+
+
+def draw_elements(axis, deck, place, low, high):
+    """A mark below the node of each element, by its role, with the name; a broken line to the other node where it has one."""
+    beside = {}
+    for name, element in (deck.get("elements") or {}).items():
+        at, other = place(element.get("node")), place(element.get("to_node"))
+        if at is None:
+            continue
+        row = beside[at] = beside.get(at, -1) + 1
+        level = low * (0.72 - 0.1 * row)
+        if other is not None:
+            axis.plot([at, other], [level, level], color=COLOURS[2], linewidth=0.8, linestyle="--", zorder=4)
+        axis.plot([at, at], [level, -0.2 * high], color=COLOURS[2], linewidth=0.6, zorder=1)
+        axis.plot(at, level, marker=MARKERS.get(element.get("role"), "s"), color=COLOURS[2], markersize=5, linestyle="none", zorder=4)
+        axis.annotate(name, (at, level), xytext=(4, -2), textcoords="offset points", ha="left", va="top", fontsize=7, color=INK)
+
+
+def draw_loads(axis, deck, place, high):
+    """An arrow on the node of each static load, along y if it has a part there, with its size."""
+    for load in deck.get("loads") or []:
+        at = place(load.get("node"))
+        force = [number(f) or 0.0 for f in load.get("force") or [0, 0]]
+        size = np.hypot(*force)
+        if at is None or not size:
+            continue
+        down = force[1] <= 0
+        ends = (0.95 * high, 0.05 * high) if down else (-0.95 * high, -0.05 * high)
+        axis.annotate("", (at, ends[1]), (at, ends[0]), arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.4}, zorder=8)
+        axis.annotate(f"{size:.4g} N", (at, ends[0]), ha="center", va="bottom" if down else "top", fontsize=7.5, color=INK)
+
+
 def right_radius(segment, key, left):
     """Radius at the right end of a segment that may be tapered."""
     given = number(segment.get(key))
@@ -103,6 +136,8 @@ def draw_shaft(results, deck, segments):
     axis.plot([z[0], z[-1]], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)), zorder=5)
     place = lambda node: z[node - 1] if isinstance(node, int) and 1 <= node <= len(z) else None  # noqa: E731
     draw_bearings(axis, deck, place, -1.45 * high, high)
+    draw_elements(axis, deck, place, -1.45 * high, high)
+    draw_loads(axis, deck, place, high)
     rotors = [str(s.get("rotor", "")) for s in segments]
     edges = [0, *[k for k in range(1, len(rotors)) if rotors[k] != rotors[k - 1]], len(rotors)]
     for a, b in zip(edges, edges[1:]):
@@ -123,6 +158,10 @@ def draw_shaft(results, deck, segments):
     axis.set_ylabel("radius [m]")
     axis.grid(False)
     handles = [Line2D([], [], color=STEEL, linewidth=7, label="shaft"), Line2D([], [], color=COLOURS[1], marker="^", linestyle="none", label="bearing")]
+    roles = list(dict.fromkeys(e.get("role", "other") for e in (deck.get("elements") or {}).values()))
+    handles += [Line2D([], [], color=COLOURS[2], marker=MARKERS.get(r, "s"), markersize=5, linestyle="none", label=f"element: {r}") for r in roles]
+    if deck.get("loads"):
+        handles.append(Line2D([], [], color=INK, marker=r"$\downarrow$", linestyle="none", label="static load"))
     if any(m > r for m, r in zip(added, outer)) or discs:
         handles.insert(1, Line2D([], [], color=ADDED, linewidth=7, label="disc" if discs else "added mass"))
     if len(edges) > 2:

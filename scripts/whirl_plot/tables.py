@@ -342,6 +342,20 @@ def inputs(results):
         keep = [k for k in range(len(head)) if k == 0 or any(str(r[k]) not in ("", "0 m", "0 \u00b5m") for r in rows)]
         out.append(Table("Bearings", [head[k] for k in keep], [[r[k] for k in keep] for r in rows]))
     rows = []
+    matrix = lambda e, key: " ".join(quantity(v) for v in e.get(key) or []) if any(str(v)[:2] not in ("0", "0 ") for v in e.get(key) or []) else ""  # noqa: E731
+    for name, e in (deck.get("elements") or {}).items():
+        end = f"node {e['to_node']}" if e.get("to_node") else f"pedestal of {e['to_pedestal']}" if e.get("to_pedestal") else "ground"
+        carries = e.get("static_load", e.get("role") in ("support", "other"))
+        rows.append([name, e.get("role", ""), e.get("node", ""), end, "yes" if carries is True or str(carries) == "true" else "no",
+                     *[matrix(e, k) for k in ("stiffness", "damping", "mass")], f"{len(e['table'])} speeds" if e.get("table") else ""])
+    if rows:
+        head = ["element", "role", "node", "other end", "static load", "K xx xy yx yy", "C", "M", "table"]
+        keep = [k for k in range(len(head)) if k == 0 or any(r[k] for r in rows)]
+        out.append(Table("Elements", [head[k] for k in keep], [[r[k] for k in keep] for r in rows]))
+    rows = [[load.get("node", ""), *[" / ".join(quantity(v) for v in load.get(k) or []) for k in ("force", "moment")]] for load in deck.get("loads") or []]
+    if rows:
+        out.append(Table("Static loads", ["node", "force x / y", "moment about x / y"], rows))
+    rows = []
     for name, u in (deck.get("unbalance") or {}).items():
         planes = ", ".join(f"node {p.get('node')}: " + " ".join(f"{k} {quantity(p[k])}" for k in ("eccentricity", "amount", "fraction", "phase") if k in p)
                            for p in u.get("planes", []))

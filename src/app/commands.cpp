@@ -101,8 +101,10 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
   const system::Machine& m = deck.machine;
   const std::string rotor =
       m.rotor.segments.empty() ? "rigid rotor" : count(m.rotor.segments.size(), "segment", "segments");
-  const std::string what =
-      system::is_rotor(m) ? rotor + ", " + count(m.bearings.size(), "bearing", "bearings") : "system " + m.system.name;
+  const std::string what = system::is_rotor(m)
+                               ? rotor + ", " + count(m.bearings.size(), "bearing", "bearings") +
+                                     (m.elements.empty() ? "" : ", " + count(m.elements.size(), "element", "elements"))
+                               : "system " + m.system.name;
   std::string text =
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
   constexpr double notable = 2e8;

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
+#include "whirl/core/curve.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/describe.hpp"
 #include "whirl/film/film.hpp"
@@ -20,44 +20,17 @@ Eight entries(const LinearAt& a) {
   return {a.k_xx, a.k_xy, a.k_yx, a.k_yy, a.c_xx, a.c_xy, a.c_yx, a.c_yy};
 }
 
-// Slope at a row between intervals of lengths h and slopes d, zero where these turn: the curve does not overshoot.
-double slope_between(double h0, double h1, double d0, double d1) {
-  if (!(d0 * d1 > 0)) return 0;
-  const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
-  return (w0 + w1) / (w0 / d0 + w1 / d1);
-}
-
-// The same at an end, of a parabola through three rows.
-double slope_at_end(double h0, double h1, double d0, double d1) {
-  const double slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-  if (!(slope * d0 > 0)) return 0;
-  return d0 * d1 <= 0 && std::abs(slope) > 3 * std::abs(d0) ? 3 * d0 : slope;
-}
-
-// Coefficients over the speed: cubic between the rows, with a continuous slope. Source: Fritsch and Butland (1984),
-// SIAM J. Sci. Stat. Comput. 5, 300.
+// Coefficients over the speed.
 class OverSpeed {
 public:
   OverSpeed(const std::vector<LinearAt>& table, bool holds) : holds_(holds) {
+    std::vector<double> speeds, values;
     for (const LinearAt& row : table) {
-      if (!speed_.empty() && !(row.speed > speed_.back()))
-        throw core::InputError("film: the speeds of the coefficients of a linear film rise");
-      speed_.push_back(row.speed);
-      value_.push_back(entries(row));
+      speeds.push_back(row.speed);
+      const Eight of = entries(row);
+      values.insert(values.end(), of.begin(), of.end());
     }
-    const std::size_t n = speed_.size();
-    slope_.assign(n, Eight{});
-    const auto h = [&](std::size_t k) { return speed_[k + 1] - speed_[k]; };
-    for (std::size_t e = 0; e < 8 && n > 1; ++e) {
-      const auto d = [&](std::size_t k) { return (value_[k + 1][e] - value_[k][e]) / h(k); };
-      if (n == 2) {
-        slope_[0][e] = slope_[1][e] = d(0);
-        continue;
-      }
-      slope_[0][e] = slope_at_end(h(0), h(1), d(0), d(1));
-      slope_[n - 1][e] = slope_at_end(h(n - 2), h(n - 3), d(n - 2), d(n - 3));
-      for (std::size_t k = 1; k + 1 < n; ++k) slope_[k][e] = slope_between(h(k - 1), h(k), d(k - 1), d(k));
-    }
+    curve_ = core::Curve(std::move(speeds), std::move(values), core::Curve::Between::cubic);
   }
 
   struct At {
@@ -65,33 +38,22 @@ public:
   };
   // Of one row at all speeds. Throws core::DomainError beyond several, unless the ends hold.
   [[nodiscard]] At operator()(double speed) const {
-    if (speed_.empty()) return {};
-    if (speed_.size() == 1) return {value_.front(), {}};
-    const double low = speed_.front(), high = speed_.back(), rounding = 1e-9 * high;
-    const bool within = speed >= low - rounding && speed <= high + rounding;
-    if (!within && holds_) return {speed < low ? value_.front() : value_.back(), {}};
-    if (!within)
+    At out;
+    if (curve_.empty()) return out;
+    const double low = curve_.first(), high = curve_.last(), rounding = 1e-9 * high;
+    const bool within = !curve_.varies() || (speed >= low - rounding && speed <= high + rounding);
+    if (!within && !holds_)
       throw core::DomainError(
           fmt::format("linear film: its coefficients are known from {:.6g} to {:.6g} rad/s, and the speed is {:.6g} "
                       "rad/s; 'extrapolate: hold' keeps those of the nearest end",
                       low, high, speed));
-    const double x = std::clamp(speed, low, high);
-    const auto above = std::upper_bound(speed_.begin() + 1, speed_.end() - 1, x);
-    const auto k = static_cast<std::size_t>(above - speed_.begin()) - 1;
-    const double h = speed_[k + 1] - speed_[k], t = (x - speed_[k]) / h, u = 1 - t;
-    At out;
-    for (std::size_t e = 0; e < 8; ++e) {
-      const double rise = value_[k + 1][e] - value_[k][e], first = slope_[k][e], last = slope_[k + 1][e];
-      out.value[e] = value_[k][e] + rise * t * t * (3 - 2 * t) + h * t * u * (first * u - last * t);
-      out.slope[e] = rise * 6 * t * u / h + first * u * (1 - 3 * t) - last * t * (2 - 3 * t);
-    }
+    curve_.at(within ? std::clamp(speed, low, high) : speed, out.value, out.slope);
     return out;
   }
 
 private:
   bool holds_;
-  std::vector<double> speed_;
-  std::vector<Eight> value_, slope_;
+  core::Curve curve_;
 };
 
 // force = -K (x, y) - C (x', y').

@@ -34,9 +34,7 @@ void check_nodes(const std::string& key, const std::vector<int>& nodes, const sy
 }
 
 void check_held(const system::Machine& machine, const deck::Report& report) {
-  std::vector<int> nodes;
-  for (const system::Bearing& b : machine.bearings) nodes.push_back(b.node);
-  if (const auto loose = rotor::loose_part(machine.rotor, nodes))
+  if (const auto loose = rotor::loose_part(machine.rotor, system::support_nodes(machine)))
     report.fail("", rotor::words(*loose, machine.rotor, "at its bearings alone"));
 }
 

@@ -191,6 +191,26 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
   bearings.put("preload", preload, "1", "m = 1 - c_b/c_p of two lobes; zero for one pad at the bottom");
   bearings.put("offset", offset, "m", "horizontal distance between the centres of the two lobes");
   bearings.put("arc", arc, "rad", "angular extent of each pad");
+  put_elements(group, machine);
+}
+
+void put_elements(io::Group& group, const system::Machine& machine) {
+  if (machine.elements.empty()) return;
+  std::vector<std::string> name, role, pedestal;
+  std::vector<std::int64_t> node, to_node;
+  for (const system::Element& e : machine.elements) {
+    name.push_back(e.name);
+    role.emplace_back(deck::name_of(e.role));
+    node.push_back(e.node);
+    to_node.push_back(e.to_node.value_or(0));
+    pedestal.push_back(e.to_pedestal.value_or(""));
+  }
+  auto& elements = group.child("elements");
+  elements.put("name", name, "elements in the order of the deck");
+  elements.put("role", role, "what they are");
+  elements.put("node", node, "shaft node, 1-based");
+  elements.put("to_node", to_node, "shaft node of the other end, 1-based; 0: the ground or a pedestal");
+  elements.put("to_pedestal", pedestal, "bearing on whose pedestal the other end is; empty: none");
 }
 
 void put_places(io::Group& group, const system::Machine& machine, const system::Plant& plant) {

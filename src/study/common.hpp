@@ -70,6 +70,8 @@ private:
 
 /// Names and clearances of the bearings, into `group`/bearings.
 void put_bearings(io::Group& group, const system::Machine& machine);
+/// Names, roles and ends of the elements, into `group`/elements; nothing if there are none.
+void put_elements(io::Group& group, const system::Machine& machine);
 /// What the outputs of a plant are: the bearings of a rotor, or names into `group`/places.
 void put_places(io::Group& group, const system::Machine& machine, const system::Plant& plant);
 [[nodiscard]] std::vector<std::string> names_of_bearings(const system::Machine& machine);

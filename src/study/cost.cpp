@@ -32,11 +32,11 @@ double n_states(const system::Machine& machine) {
                     : r.reduction.type == modal ? 2 * modes
                     : r.reduction.type == guyan ? 2 * masters
                                                 : 2 * (masters + modes);
-  for (const system::Bearing& b : machine.bearings) {
+  for (const system::Bearing& b : machine.bearings)
     if (b.pedestal) freedoms += 2;
-    // Slopes that no reduction takes away.
-    if (r.type == rotor::Options::Type::shaft && r.reduction.type != none && film::facts(b.film).tilts) freedoms += 2;
-  }
+  // Slopes that no reduction takes away.
+  if (r.type == rotor::Options::Type::shaft && r.reduction.type != none)
+    freedoms += 2 * static_cast<double>(system::slope_nodes(machine).size());
   return 2 * freedoms + n_film_states(machine);
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "common.hpp"
 #include "cost.hpp"
+#include "make_plant.hpp"
 #include "premises.hpp"
 #include "sense.hpp"
 #include "whirl/deck/load.hpp"
@@ -15,6 +17,7 @@
 #include "whirl/rotor/advice.hpp"
 #include "whirl/rotor/hinges.hpp"
 #include "whirl/study/sweep/sweep.hpp"
+#include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {
 namespace {
@@ -63,20 +66,39 @@ void check_names(const Deck& deck, const deck::Report& r) {
   }
 }
 
-// A shaft in two bearings at least, which leave no part of it free to move.
+// A shaft in two bearings or other supports at least, which leave no part of it free to move.
 void check_supports(const system::Machine& machine, const deck::Report& r) {
-  if (machine.bearings.size() < 2) return r.fail("bearings", "a shaft needs at least two bearings");
-  std::vector<int> nodes, slopes;
-  for (const system::Bearing& b : machine.bearings) {
-    nodes.push_back(b.node);
+  const std::vector<int> nodes = system::support_nodes(machine);
+  if (nodes.size() < 2)
+    return r.fail("bearings", "a shaft needs bearings, or elements that are supports, at two nodes at least");
+  std::vector<int> slopes;
+  for (const system::Bearing& b : machine.bearings)
     if (film::facts(b.film).tilts) slopes.push_back(b.node);
-  }
   if (const auto loose = rotor::loose_part(machine.rotor, nodes, slopes))
     r.fail(fmt::format("rotor.couplings.{}.tilt_stiffness", loose->coupling + 1),
            rotor::words(*loose, machine.rotor, "by its bearings"));
 }
 
+// From where it rested last, else as studies find an equilibrium.
+class ByNewton : public system::RestFinder {
+public:
+  void find(system::RotorSystem& machine, Vec x, bool near) const override {
+    if (near) {
+      const core::Vector trial = core::duplicate(x);
+      core::check(VecCopy(x, trial.get()));
+      if (find_rest(machine, trial.get()).converged) return core::check(VecCopy(trial.get(), x));
+    }
+    core::check(VecCopy(find_rest(machine).get(), x));
+  }
+};
+
 }  // namespace
+
+Deck::Deck() {
+  static const ByNewton by_newton;
+  machine.rest = &by_newton;
+}
+
 void describe(deck::Description<Limits>& d) {
   d.add("memory", &Limits::memory, "byte", deck::positive,
         "of all ranks together, above which a study is refused before it begins; its need is estimated from counts");
@@ -145,6 +167,12 @@ std::vector<std::string> warnings(const Deck& d) {
   add(rotor::advice(d.machine.rotor));
   add(unbalance_warnings(d.machine));
   for (const auto& s : d.studies) add(table_warnings(d.machine, *s));
+  constexpr std::size_t enough = 5;
+  for (const system::Element& e : d.machine.elements)
+    if (!e.table.empty() && e.table.size() < enough)
+      all.push_back(
+          fmt::format("element {}: its table has {} rows; with fewer than {} the curve between them is a guess", e.name,
+                      e.table.size(), enough));
   const std::vector<std::string> own = all;
   for (const auto& s : d.studies) {
     const auto* sweep = dynamic_cast<const Sweep*>(s.get());

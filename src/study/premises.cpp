@@ -28,18 +28,25 @@ std::vector<std::string> table_warnings(const system::Machine& machine, const St
   if (speeds.empty() || !system::is_rotor(machine)) return {};
   const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
   std::vector<std::string> lines;
+  const auto known = [&](const std::string& what, double from, double to, bool holds) {
+    const double rounding = 1e-9 * to;
+    if (*least >= from - rounding && *most <= to + rounding) return;
+    lines.push_back(
+        fmt::format("'{}' asks for speeds from {:.6g} to {:.6g} rad/s, and the table of {} goes from "
+                    "{:.6g} to {:.6g} rad/s: beyond it {}",
+                    study.name(), *least, *most, what, from, to,
+                    holds ? "the coefficients of its nearest end are kept (extrapolate: hold)"
+                          : "there is no answer; 'extrapolate: hold' keeps the coefficients of its nearest "
+                            "end"));
+  };
   for (const system::Bearing& b : machine.bearings) {
     const film::Facts film = film::facts(b.film);
-    const double from = film.known_speeds[0], to = film.known_speeds[1], rounding = 1e-9 * to;
-    if (*least >= from - rounding && *most <= to + rounding) continue;
-    lines.push_back(fmt::format(
-        "'{}' asks for speeds from {:.6g} to {:.6g} rad/s, and the table of bearing {} goes from {:.6g} to {:.6g} "
-        "rad/s: "
-        "beyond it {}",
-        study.name(), *least, *most, b.name, from, to,
-        film.holds_beyond ? "the coefficients of its nearest end are kept (extrapolate: hold)"
-                          : "there is no answer; 'extrapolate: hold' keeps the coefficients of its nearest end"));
+    known("bearing " + b.name, film.known_speeds[0], film.known_speeds[1], film.holds_beyond);
   }
+  for (const system::Element& e : machine.elements)
+    if (e.table.size() > 1)
+      known("element " + e.name, e.table.front().speed, e.table.back().speed,
+            e.extrapolate == film::Linear::Beyond::hold);
   return lines;
 }
 

@@ -11,7 +11,7 @@ namespace whirl::study {
 /// Fractions of a balance grade that do not sum to one, a line each.
 [[nodiscard]] std::vector<std::string> unbalance_warnings(const system::Machine& machine);
 
-/// Speeds of `study` at which the coefficients of a bearing are not known, a line for each bearing.
+/// Speeds of `study` at which the coefficients of a bearing or an element are not known, a line for each.
 [[nodiscard]] std::vector<std::string> table_warnings(const system::Machine& machine, const Study& study);
 
 /// Adds the unbalance that the study applies: the mass of each grade, `unbalance.NAME.mass` [kg], U of each plane,

@@ -57,6 +57,9 @@ void RotorSystem::MachineBlocks::rebuild() {
       }
     ports += k;
   }
+  by_speed_.clear();
+  for (const Mat slope : {system.hub_->by_speed().at_rest.get(), system.hub_->by_speed().rates.get()})
+    if (slope) by_speed_.push_back(block(n, slope));
   l1_ = block(n, m.rates.get());
   l0_at_rest_ = block(n, m.at_rest.get());
   gyroscopic_ = block(n, m.turning.get());
@@ -83,7 +86,13 @@ void RotorSystem::MachineBlocks::find_own_states() {
   }
 }
 
+const problem::SparseBlock& RotorSystem::MachineBlocks::l1() {
+  system_.prepare();
+  return l1_;
+}
+
 const problem::SparseBlock& RotorSystem::MachineBlocks::l0() {
+  system_.prepare();
   if (l0_speed_ != system_.speed_) {
     l0_speed_ = system_.speed_;
     l0_.coeffs() = l0_at_rest_.coeffs() + l0_speed_ * l0_by_speed_.coeffs();
@@ -92,6 +101,7 @@ const problem::SparseBlock& RotorSystem::MachineBlocks::l0() {
 }
 
 void RotorSystem::MachineBlocks::load(double angle, Eigen::VectorXd& load) {
+  system_.prepare_loads(false);
   const RotorPart& hub = *system_.hub_;
   const auto [c, s] = RotorPart::unbalance_factors(system_.moment(angle, nullptr, nullptr));
   load.setZero(size());
@@ -180,10 +190,15 @@ void RotorSystem::MachineBlocks::parameter_derivative(double angle, const Eigen:
       check(VecCreateSeqWithArray(system_.comm_, 1, static_cast<PetscInt>(v.size()), v.data(), wrapped.put()));
       return wrapped;
     };
+    system_.prepare_loads(true);
     return system_.slope().derivative(angle, vector(x).get(), vector(xdot).get(), vector(out).get());
   }
+  system_.prepare_loads(true);
   out.resize(n + k);
   out.head(n).noalias() = gyroscopic_ * x.head(n);
+  if (!by_speed_.empty()) out.head(n) += by_speed_[0] * x.head(n) + by_speed_[1] * xdot.head(n);
+  if (const std::vector<double> lacking = system_.hub_->load_by_speed(); !lacking.empty())
+    out.head(n) -= Eigen::Map<const Eigen::VectorXd>(lacking.data(), n);
   out.head(n).noalias() -= b_ * films.d_speed.head(b_.cols());
   out.tail(k) = films.d_speed.tail(k);
   if (!system_.forcing_) return;

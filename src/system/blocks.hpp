@@ -22,7 +22,7 @@ public:
   [[nodiscard]] Eigen::Index n_forces() const override { return b_.cols(); }
   [[nodiscard]] Eigen::Index n_inputs() const override { return c_.rows(); }
   [[nodiscard]] const std::vector<problem::OwnStates>& own() const override { return own_; }
-  [[nodiscard]] const problem::SparseBlock& l1() override { return l1_; }
+  [[nodiscard]] const problem::SparseBlock& l1() override;
   [[nodiscard]] const problem::SparseBlock& l0() override;
   [[nodiscard]] const problem::SparseBlock& b() const override { return b_; }
   [[nodiscard]] const problem::SparseBlock& c() const override { return c_; }
@@ -38,6 +38,7 @@ private:
   RotorSystem& system_;
   problem::SparseBlock l1_, l0_at_rest_, l0_by_speed_, gyroscopic_, l0_, b_, c_;
   double l0_speed_ = -1;
+  std::vector<problem::SparseBlock> by_speed_;  // dL0/dOmega, dL1/dOmega of joints; empty if zero
   std::vector<problem::OwnStates> own_;
   struct Ports {
     Eigen::Index first, count;

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <map>
 
 #include "blocks.hpp"
 #include "change.hpp"
 #include "film_part.hpp"
+#include "rest.hpp"
 #include "rotor_part.hpp"
 #include "settling.hpp"
 #include "slope.hpp"
@@ -18,6 +20,24 @@
 namespace whirl::system {
 
 using core::check;
+
+namespace {
+
+// Bearings and elements that hold the shaft, one at a node: two bearings there hold it at the mean of their elevations.
+std::vector<rotor::Support> rigid_supports(const Train& train) {
+  std::map<int, std::pair<double, int>> at;  // node: sum of the elevations, count
+  for (const Support& s : train.supports) {
+    at[s.node].first += s.elevation;
+    ++at[s.node].second;
+  }
+  for (const Element& e : train.elements)
+    if (holds_shaft(e)) ++at[e.node].second;
+  std::vector<rotor::Support> out;
+  for (const auto& [node, sum] : at) out.push_back({node, sum.first / sum.second});
+  return out;
+}
+
+}  // namespace
 
 void RotorSystem::build() {
   bearings_.resize(train_.supports.size());
@@ -51,6 +71,7 @@ void RotorSystem::build() {
     b.part->join(std::move(ports), n_);
   }
   axes_ = axes_of(train_);
+  if (Rest::needed(train_)) rest_ = std::make_unique<Rest>(*this);
   share_out_own_states();
 
   // Which entries of the state the films see: positions and velocities at their ports, and own states.
@@ -80,13 +101,25 @@ void RotorSystem::set_train(Train train) {
   for (std::size_t k = 0; k < films.size(); ++k) bearings_[change.films[k]].part = std::move(films[k]);
   hub_->take(change, std::move(rotor));
   const bool matrices = change.shaft || change.damping;
-  if (matrices && j_at_rest_)
-    fill_constant_parts();
-  else if (change.pedestals && j_at_rest_)
-    hub_->set_pedestals(j_at_rest_.get(), j_rates_.get());
-  if (matrices || change.pedestals) hub_entries_.clear();
-  if (blocks_ && (matrices || change.pedestals)) blocks_->rebuild();
+  if (matrices && j_at_rest_) fill_constant_parts();
+  if (matrices) hub_entries_.clear();
+  if (blocks_ && matrices) blocks_->rebuild();
+  if (rest_) rest_->follow_train();
   slope_.reset();
+}
+
+void RotorSystem::prepare() {
+  if (!hub_->follow(speed_)) return;
+  if (j_at_rest_) hub_->set_joints(j_at_rest_.get(), j_rates_.get());
+  hub_entries_.clear();
+  if (blocks_) blocks_->rebuild();
+}
+
+void RotorSystem::prepare_loads(bool derivative) {
+  prepare();
+  if (!rest_) return;
+  if (rest_->find()) hub_->set_rest(hub_->motions(rest_->hub().data()));
+  if (derivative) hub_->set_rest_rate(hub_->motions(rest_->hub_rate().data()));
 }
 
 std::vector<std::unique_ptr<FilmPart>> RotorSystem::parts_at(const Train& train,
@@ -114,7 +147,7 @@ std::vector<std::array<double, 2>> RotorSystem::axes_of(const Train& train) cons
     }
     if (line.empty()) {
       std::vector<rotor::Support> supports;
-      for (const Support& s : train.supports) supports.push_back({s.node, s.elevation});
+      supports = rigid_supports(train);
       line = rotor::rigid_static(comm_, train.rotor, supports, train.gravity).slope;
       for (rotor::Support& s : supports) s.elevation = 0;
       if (train.gravity_x != 0) across = rotor::rigid_static(comm_, train.rotor, supports, -train.gravity_x).slope;

@@ -20,7 +20,8 @@ rotor::Options shaft_of(rotor::Options o) {
 Change change_between(const Train& from, const Train& to) {
   const rotor::Options &a = from.rotor, &b = to.rotor;
   core::require(a.type == b.type && a.segments.size() == b.segments.size() && a.reduction == b.reduction &&
-                    from.supports.size() == to.supports.size() && from.loads.size() == to.loads.size(),
+                    from.supports.size() == to.supports.size() && from.loads.size() == to.loads.size() &&
+                    from.elements.size() == to.elements.size(),
                 "trains of the same shape");
   Change out;
   out.shaft = shaft_of(a) != shaft_of(b);
@@ -32,13 +33,14 @@ Change change_between(const Train& from, const Train& to) {
   out.load = out.shaft || gravity || a.load != b.load || from.loads != to.loads;
   out.axes = out.shaft || gravity;
   out.unbalance = out.shaft || from.unbalance != to.unbalance;
+  out.joints = from.elements != to.elements;
   for (std::size_t i = 0; i < from.supports.size(); ++i) {
     const Support &s = from.supports[i], &t = to.supports[i];
     core::require(s.node == t.node && s.has_pedestal == t.has_pedestal, "bearings at the same places");
     if (!same_film(s, t)) out.films.push_back(i);
     out.axes = out.axes || s.elevation != t.elevation || s.slope != t.slope;
     if (!s.has_pedestal) continue;
-    out.pedestals = out.pedestals || s.mass != t.mass || s.stiffness != t.stiffness || s.damping != t.damping;
+    out.joints = out.joints || s.mass != t.mass || s.stiffness != t.stiffness || s.damping != t.damping;
     out.load = out.load || s.mass != t.mass;
   }
   return out;

@@ -10,9 +10,9 @@ namespace whirl::system {
 
 /// Parts of a train that have other numbers than those of another one.
 struct Change {
-  bool shaft = false;      ///< beams, discs, the mass of a rigid rotor: all matrices, load and unbalance
-  bool damping = false;    ///< stiffness_damping alone, of a rotor whose basis does not depend on it
-  bool pedestals = false;  ///< their mass, damping or stiffness
+  bool shaft = false;    ///< beams, discs, the mass of a rigid rotor: all matrices, load and unbalance
+  bool damping = false;  ///< stiffness_damping alone, of a rotor whose basis does not depend on it
+  bool joints = false;   ///< mass, damping or stiffness of pedestals and elements
   bool load = false;
   bool axes = false;  ///< of bearings that are aligned to the shaft
   bool unbalance = false;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <set>
-#include <unordered_map>
 
 #include "whirl/film/describe.hpp"
 #include "whirl/rotor/describe.hpp"
@@ -208,37 +206,23 @@ bool kept(const rotor::Options& o, int node) {
          std::find(masters.begin(), masters.end(), node) != masters.end();
 }
 
-// Nodes whose slopes films and moments turn: a reduction keeps them.
-std::set<int> slope_masters(const Machine& m) {
-  std::set<int> nodes;
-  for (const Bearing& b : m.bearings)
-    if (film::facts(b.film).tilts) nodes.insert(b.node);
-  for (const StaticLoad& l : m.loads)
-    if (l.moment) nodes.insert(l.node);
-  return nodes;
-}
-
 void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
   std::vector<std::string> lubricants;
   for (const auto& [name, l] : m.lubricants) lubricants.push_back(name);
   const auto& reduction = m.rotor.reduction;
   const bool rigid = m.rotor.type == rotor::Options::Type::rigid;
-  std::unordered_map<int, const Bearing*> bearing_at;
   for (std::size_t i = 0; i < m.bearings.size(); ++i) {
     const Bearing& b = m.bearings[i];
     const std::string path = "bearings." + b.name;
     if (b.node > n_nodes)
       r.fail(path + ".node", fmt::format("node {} does not exist: the shaft has nodes 1 to {}", b.node, n_nodes));
-    const auto [first, fresh] = bearing_at.emplace(b.node, &b);
-    if (!fresh && !rigid)
-      r.fail(path + ".node", fmt::format("bearing {} stands at node {} already", first->second->name, b.node));
     if (!kept(m.rotor, b.node))
       r.fail("rotor.reduction.masters", fmt::format("node {} of bearing {} must be a master", b.node, b.name));
     const bool tilts = film::facts(b.film).tilts;
     if (tilts && rigid)
       r.fail(path + ".film.tilt",
              "a rigid rotor has no slope: its journals stay parallel to their bearings. Leave 'tilt' out");
-    else if (tilts && !b.slope && m.bearings.size() < 2)
+    else if (tilts && !b.slope && support_nodes(m).size() < 2)
       r.fail(path,
              "one bearing alone does not hold the shaft, which then has no slope at rest: give the 'slope' of the "
              "bearing");
@@ -248,8 +232,8 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
              fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean_one_of(*name, lubricants)));
   }
   if (rigid && m.bearings.empty()) r.fail("bearings", "a rotor needs a bearing");
-  // Slopes that films and moments turn are masters beside the nodes.
-  const auto slopes = static_cast<std::ptrdiff_t>(slope_masters(m).size());
+  // Slopes that films, moments and elements turn are masters beside the nodes.
+  const auto slopes = static_cast<std::ptrdiff_t>(slope_nodes(m).size());
   const auto inner = 2 * n_nodes - static_cast<std::ptrdiff_t>(reduction.masters.size()) - slopes;
   const bool fixed_interface = reduction.type == rotor::Reduction::Type::craig_bampton ||
                                reduction.type == rotor::Reduction::Type::craig_bampton_state;
@@ -269,6 +253,31 @@ void check_loads(const Machine& m, int n_nodes, const deck::Report& r) {
       r.fail("rotor.reduction.masters", fmt::format("node {} of load {} must be a master", l.node, i + 1));
     if (m.rotor.type == rotor::Options::Type::rigid && l.moment)
       r.fail(path + ".moment", "a rigid rotor has no slope for a moment to turn: give its force alone");
+  }
+}
+
+void check_elements(const Machine& m, int n_nodes, const deck::Report& r) {
+  for (const Element& e : m.elements) {
+    const std::string path = "elements." + e.name;
+    const auto stands = [&](const char* key, int node) {
+      if (node > n_nodes)
+        r.fail(path + "." + key, fmt::format("node {} does not exist: the shaft has nodes 1 to {}", node, n_nodes));
+      else if (!kept(m.rotor, node))
+        r.fail("rotor.reduction.masters", fmt::format("node {} of element {} must be a master", node, e.name));
+    };
+    stands("node", e.node);
+    if (e.to_node) stands("to_node", *e.to_node);
+    if (e.to_pedestal) {
+      const auto at = find_bearing(m, *e.to_pedestal);
+      if (!at)
+        r.fail(path + ".to_pedestal", fmt::format("there is no bearing '{}'{}", *e.to_pedestal,
+                                                  deck::did_you_mean_one_of(*e.to_pedestal, bearing_names(m))));
+      else if (!m.bearings[*at].pedestal)
+        r.fail(path + ".to_pedestal",
+               fmt::format("bearing {} stands on the ground: give it a 'pedestal', or leave this out", *e.to_pedestal));
+    }
+    if (m.rotor.type == rotor::Options::Type::rigid && sees_slopes(e))
+      r.fail(path, "a rigid rotor has no slopes: leave 'slopes' and the columns of slopes out");
   }
 }
 
@@ -293,7 +302,7 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
     if (!u.rotor.empty() && std::find(rotors.begin(), rotors.end(), u.rotor) == rotors.end())
       r.fail(path + ".rotor",
              fmt::format("there is no rotor '{}'{}", u.rotor, deck::did_you_mean_one_of(u.rotor, rotors)));
-    else if (u.grade && u.mass.of == BalanceMass::Of::span && !enclosing_bearings(m, u.rotor))
+    else if (u.grade && u.mass.of == BalanceMass::Of::span && !enclosing_supports(m, u.rotor))
       r.fail(path + ".mass", u.rotor.empty()
                                  ? "the middle of the shaft does not lie between two bearings"
                                  : fmt::format("the middle of rotor '{}' does not lie between two bearings", u.rotor));
@@ -310,10 +319,10 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
 // Bearings that are bored in line with the shaft need its shape at rest, in which hinges hang on supports alone: films
 // that tilt hold slopes as well.
 void check_bored(const Machine& m, const deck::Report& r) {
-  std::vector<int> nodes, slopes;
+  const std::vector<int> nodes = support_nodes(m);
+  std::vector<int> slopes;
   bool bored = false;
   for (const Bearing& b : m.bearings) {
-    nodes.push_back(b.node);
     if (!film::facts(b.film).tilts) continue;
     slopes.push_back(b.node);
     bored = bored || !b.slope;
@@ -351,6 +360,10 @@ void describe(deck::Description<Machine>& d) {
         "three times what superfinished surfaces have, and 0 um where 'contact' lets them carry; 0 um: contact only",
         "Hamrock, Schmid and Jacobson (2004), sec. 3.8")
       .only(&Machine::system, rotor);
+  d.named("elements", &Machine::elements, &Element::name,
+          "linear elements that are no bearings, by name: seals, aerodynamic cross-coupling, springs. Any number may "
+          "stand at a node")
+      .only(&Machine::system, rotor);
   d.named("unbalance", &Machine::unbalance, &Unbalance::name, "unbalances by name, for studies to choose from")
       .only(&Machine::system, rotor);
   describe_others(d);
@@ -360,6 +373,7 @@ void describe(deck::Description<Machine>& d) {
     check_bearings(m, n_nodes, r);
     check_bored(m, r);
     check_loads(m, n_nodes, r);
+    check_elements(m, n_nodes, r);
     check_unbalance(m, n_nodes, r);
   });
 }

@@ -57,6 +57,7 @@ void RotorSystem::list_hub() {
 
 bool RotorSystem::entries(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, problem::Entries& out) {
   if (n_own_ == 0) return false;
+  prepare();
   evaluate_films(x, xdot, film::Need::tangents);
   int listed = hub_->rows() == 0 || !hub_entries_.empty();
   MPI_Allreduce(MPI_IN_PLACE, &listed, 1, MPI_INT, MPI_LAND, comm_);

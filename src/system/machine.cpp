@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <numeric>
+#include <set>
 
 #include "whirl/film/thickness.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -33,6 +33,43 @@ std::optional<std::size_t> find_bearing(const Machine& m, std::string_view name)
   return position(m.bearings, name);
 }
 
+std::optional<std::size_t> find_element(const Machine& m, std::string_view name) {
+  return position(m.elements, name);
+}
+
+std::vector<int> support_nodes(const Machine& m) {
+  std::set<int> nodes;
+  for (const Bearing& b : m.bearings) nodes.insert(b.node);
+  for (const Element& e : m.elements)
+    if (holds_shaft(e)) nodes.insert(e.node);
+  return {nodes.begin(), nodes.end()};
+}
+
+std::vector<int> acting_nodes(const Machine& m) {
+  std::set<int> nodes;
+  for (const Bearing& b : m.bearings) nodes.insert(b.node);
+  for (const StaticLoad& l : m.loads) nodes.insert(l.node);
+  for (const Element& e : m.elements) {
+    nodes.insert(e.node);
+    if (e.to_node) nodes.insert(*e.to_node);
+  }
+  return {nodes.begin(), nodes.end()};
+}
+
+std::vector<int> slope_nodes(const Machine& m) {
+  std::set<int> nodes;
+  for (const Bearing& b : m.bearings)
+    if (film::facts(b.film).tilts) nodes.insert(b.node);
+  for (const StaticLoad& l : m.loads)
+    if (l.moment) nodes.insert(l.node);
+  for (const Element& e : m.elements) {
+    if (!sees_slopes(e)) continue;
+    nodes.insert(e.node);
+    if (e.to_node) nodes.insert(*e.to_node);
+  }
+  return {nodes.begin(), nodes.end()};
+}
+
 std::optional<std::size_t> find_unbalance(const Machine& m, std::string_view name) {
   return position(m.unbalance, name);
 }
@@ -60,7 +97,7 @@ std::vector<int> unbalance_nodes(const Machine& m, std::string_view name) {
   return nodes;
 }
 
-std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, std::string_view rotor) {
+std::optional<std::array<int, 2>> enclosing_supports(const Machine& m, std::string_view rotor) {
   const std::vector<double> z = rotor::node_positions(m.rotor);
   double from = z.back(), to = z.front();
   for (std::size_t i = 0; i < m.rotor.segments.size(); ++i) {
@@ -69,15 +106,12 @@ std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, s
     to = std::max(to, z[i + 1]);
   }
   if (from >= to) return {};
-  std::vector<std::size_t> order(m.bearings.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return m.bearings[a].node < m.bearings[b].node; });
-  auto position_of = [&](std::size_t bearing) { return z.at(static_cast<std::size_t>(m.bearings[bearing].node - 1)); };
+  const std::vector<int> nodes = support_nodes(m);
+  const auto position_of = [&](int node) { return z.at(static_cast<std::size_t>(node - 1)); };
   const double middle = (from + to) / 2;
-  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
-    if (m.bearings[order[k + 1]].node > static_cast<int>(z.size())) return {};
-    if (position_of(order[k]) < middle && middle <= position_of(order[k + 1])) return {{order[k], order[k + 1]}};
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+    if (nodes[k + 1] > static_cast<int>(z.size())) return {};
+    if (position_of(nodes[k]) < middle && middle <= position_of(nodes[k + 1])) return {{nodes[k], nodes[k + 1]}};
   }
   return {};
 }
@@ -85,9 +119,9 @@ std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, s
 double graded_mass(const Machine& m, const Unbalance& u) {
   if (u.mass.of == BalanceMass::Of::given) return u.mass.given;
   if (u.mass.of == BalanceMass::Of::rotor) return rotor::mass_of(m.rotor, u.rotor);
-  const auto pair = enclosing_bearings(m, u.rotor);
+  const auto pair = enclosing_supports(m, u.rotor);
   core::require(pair.has_value(), "an unbalance whose rotor does not lie between two bearings was not refused");
-  return rotor::mass_between(m.rotor, m.bearings[(*pair)[0]].node, m.bearings[(*pair)[1]].node);
+  return rotor::mass_between(m.rotor, (*pair)[0], (*pair)[1]);
 }
 
 std::vector<UnbalanceMass> unbalance_masses(const Machine& m, const Unbalance& u) {
@@ -106,20 +140,16 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
   t.gravity_x = lateral(m.gravity)[0];
   t.gravity = -lateral(m.gravity)[1];
   t.loads = m.loads;
-  const auto keep_slopes = [&t](int node) {
-    std::vector<int>& slopes = t.rotor.reduction.slopes;
-    if (t.rotor.reduction.type != rotor::Reduction::Type::none &&
-        std::find(slopes.begin(), slopes.end(), node) == slopes.end())
-      slopes.push_back(node);
-  };
+  t.elements = m.elements;
+  t.rest = m.rest;
+  // What acts on slopes no reduction may take away.
+  if (t.rotor.reduction.type != rotor::Reduction::Type::none) t.rotor.reduction.slopes = slope_nodes(m);
   for (const Bearing& b : m.bearings) {
     Support s;
     s.name = b.name;
     s.node = b.node;
     s.elevation = b.elevation;
     s.slope = b.slope;
-    // A film that tilts couples to slopes, which no reduction may then take away.
-    if (film::facts(b.film).tilts) keep_slopes(b.node);
     if (b.geometry) s.geometry = *b.geometry;
     s.film = b.film;
     if (const auto* own = std::get_if<film::Lubricant>(&b.lubricant))
@@ -139,11 +169,8 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
     }
     t.supports.push_back(s);
   }
-  for (const StaticLoad& l : m.loads)
-    if (l.moment) keep_slopes(l.node);
   if (m.rotor.element == rotor::Element::timoshenko_hermitian) {
-    for (const Bearing& b : m.bearings) t.rotor.joints.push_back(b.node);
-    for (const StaticLoad& l : m.loads) t.rotor.joints.push_back(l.node);
+    for (const int node : acting_nodes(m)) t.rotor.joints.push_back(node);
     for (const Unbalance& u : m.unbalance)
       for (const UnbalanceMass& x : unbalance_masses(m, u)) t.rotor.joints.push_back(x.node);
   }

@@ -51,8 +51,10 @@ RotorPart::RotorPart(MPI_Comm comm, const Train& train, bool on_first)
   const int with_pedestals_on = on_first_ ? 0 : core::size_of(comm_) - 1;
   begin_ = rank > with_pedestals_on ? n_ : begin;
   end_ = rank >= with_pedestals_on ? n_ : end;
+  join();
   make_matrices();
-  load_ = load_of(*rotor_, weights_of(train_));
+  weights_ = load_of(*rotor_, weights_of(train_));
+  update_load();
   unbalance_ = unbalance_of(*rotor_, train_.unbalance);
 }
 
@@ -73,9 +75,10 @@ void RotorPart::take(const Change& change, std::unique_ptr<rotor::Rotor> rotor) 
     rotor_->set_stiffness_damping(train_.rotor.stiffness_damping);
   if (change.shaft || change.damping)
     make_matrices();
-  else if (change.pedestals)
-    set_pedestals();
-  if (change.load) load_ = load_of(*rotor_, weights_of(train_));
+  else if (change.joints)
+    speed_.reset();
+  if (change.load) weights_ = load_of(*rotor_, weights_of(train_));
+  if (change.load || change.joints) update_load();
   if (change.unbalance) unbalance_ = unbalance_of(*rotor_, train_.unbalance);
 }
 
@@ -103,10 +106,11 @@ RotorPart::Matrices RotorPart::matrices_of(const rotor::Rotor& rotor) const {
     rates.add(2 * i + 1, 2 * i, 1);
     at_rest.add(2 * i + 1, 2 * i + 1, -1);
   }
-  // Room for what pedestals have.
-  for (PetscInt i = std::max(begin_, n_rotor_); i < end_; ++i) {
-    rates.add(2 * i, 2 * i + 1, 0);
-    for (const PetscInt rate : {0, 1}) at_rest.add(2 * i, 2 * i + rate, 0);
+  // Room for joints, whose coefficients any place may have.
+  for (const auto& [place, none] : places()) {
+    const auto [i, j] = place;
+    rates.add(2 * i, 2 * j + 1, 0);
+    for (const PetscInt rate : {0, 1}) at_rest.add(2 * i, 2 * j + rate, 0);
   }
   const PetscInt rows = end_ - begin_;
   return {rates.matrix(comm_, rows), at_rest.matrix(comm_, rows), turning.matrix(comm_, rows)};
@@ -114,42 +118,8 @@ RotorPart::Matrices RotorPart::matrices_of(const rotor::Rotor& rotor) const {
 
 void RotorPart::make_matrices() {
   matrices_ = matrices_of(*rotor_);
-  set_pedestals();
-}
-
-namespace {
-
-// Calls put(row, mass, damping, stiffness) for the pedestals whose rows are in [begin, end): they stand on diagonals.
-template <class Put>
-void for_pedestals(const Train& train, const std::vector<std::array<PetscInt, 2>>& rows, PetscInt begin, PetscInt end,
-                   const Put& put) {
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t d = 0; d < 2; ++d) {
-      const Support& s = train.supports[i];
-      if (const PetscInt row = rows[i][d]; row >= begin && row < end) put(row, s.mass[d], s.damping[d], s.stiffness[d]);
-    }
-}
-
-void assemble(std::initializer_list<Mat> all) {
-  for (Mat m : all) {
-    check(MatAssemblyBegin(m, MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(m, MAT_FINAL_ASSEMBLY));
-  }
-}
-
-}  // namespace
-
-void RotorPart::set_pedestals() {
-  set_pedestals(matrices_.at_rest.get(), matrices_.rates.get());
-}
-
-void RotorPart::set_pedestals(Mat at_rest, Mat rates) const {
-  for_pedestals(train_, pedestals_, begin_, end_, [&](PetscInt row, double mass, double damping, double stiffness) {
-    check(MatSetValue(at_rest, 2 * row, 2 * row, stiffness, INSERT_VALUES));
-    check(MatSetValue(at_rest, 2 * row, 2 * row + 1, damping, INSERT_VALUES));
-    check(MatSetValue(rates, 2 * row, 2 * row + 1, mass, INSERT_VALUES));
-  });
-  assemble({at_rest, rates});
+  find_base();
+  speed_.reset();
 }
 
 RotorPart::Weights RotorPart::weights_of(const Train& train) {
@@ -321,16 +291,28 @@ void RotorPart::residual(const Moment& at, double* f) const {
 void RotorPart::speed_derivative(const Moment& at, double* f) const {
   const core::Vector x = own(at.x), sum = core::duplicate(x.get());
   check(MatMult(matrices_.turning.get(), x.get(), sum.get()));
+  if (by_speed_.at_rest) {
+    check(MatMultAdd(by_speed_.at_rest.get(), x.get(), sum.get(), sum.get()));
+    check(MatMultAdd(by_speed_.rates.get(), own(at.xdot).get(), sum.get(), sum.get()));
+  }
+  const std::vector<double> lacking = load_by_speed();
   const core::ReadArray sa(sum.get());
   const double force = at.forcing ? 2 * at.speed : 0.0, c = force * std::cos(at.angle), s = force * std::sin(at.angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto row = static_cast<std::size_t>(2 * begin_ + i);
     f[i] = sa[i] - c * unbalance_.cosine[row] - s * unbalance_.sine[row];
+    if (!lacking.empty()) f[i] -= lacking[static_cast<std::size_t>(i)];
   }
 }
 
 void RotorPart::count_entries(std::span<PetscInt> count) const {
-  constexpr PetscInt of_films = 12;
+  // A journal and its slopes, displacements and velocities, and the pedestals of all bearings at one node.
+  PetscInt pedestals = 1;
+  for (const Support& s : train_.supports)
+    pedestals = std::max<PetscInt>(
+        pedestals, std::count_if(train_.supports.begin(), train_.supports.end(),
+                                 [&s](const Support& t) { return t.has_pedestal && t.node == s.node; }));
+  const PetscInt of_films = 8 + 4 * pedestals;
   for (PetscInt i = 0; i < rows(); ++i) {
     PetscInt total = i % 2 == 0 ? of_films : 0;
     for (const core::Matrix* m : {&matrices_.rates, &matrices_.at_rest, &matrices_.turning}) {

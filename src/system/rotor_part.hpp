@@ -2,6 +2,7 @@
 // The hub of a machine: the rotor with its pedestals.
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,7 +23,9 @@ namespace whirl::system {
 ///
 /// A rotor reduced in state space has the rows N u' + (P + Omega Q) u - loads - forces of its own, in pairs of states;
 /// of its masters these are displacement and velocity, and forces of films act on the first row of the pair. Either way
-/// the rows are linear in states and rates with three constant matrices, and that is what is kept. Rows follow the
+/// the rows are linear in states and rates with three constant matrices, and that is what is kept. Pedestals and
+/// elements are joints: K, C and M between few coordinates, which stand in these matrices at the speed that they were
+/// last told. Elements that carry no static load are measured from a place of rest. Rows follow the
 /// rotor's distribution with the pedestals on its last rank, or all stand on the first one. Its rows are the first on
 /// every rank.
 class RotorPart final : public Part {
@@ -38,13 +41,8 @@ public:
   };
   /// Derivatives in a parameter of the numbers that the rows are made of: of those that depend on it.
   struct Rates {
-    struct Pedestal {
-      PetscInt row;
-      double mass, damping, stiffness;
-    };
-    std::optional<Matrices> matrices;
-    std::vector<Pedestal> pedestals;  // on this rank
-    std::vector<double> load;         // as load(), or empty
+    std::optional<Matrices> matrices, joints;
+    std::vector<double> load;  // as load(), or empty
     std::optional<Unbalances> unbalance;
   };
 
@@ -62,8 +60,27 @@ public:
   /// Coordinates of the pedestal of a bearing in x and y; -1: it has none.
   [[nodiscard]] const std::array<PetscInt, 2>& pedestal(std::size_t bearing) const { return pedestals_[bearing]; }
   [[nodiscard]] const Matrices& matrices() const { return matrices_; }
-  /// Weight and static load on this rank's rows [N].
+  /// Weight and static load on this rank's rows, and what elements away from their place of rest lack [N].
   [[nodiscard]] const std::vector<double>& load() const { return load_; }
+
+  /// The joints at this speed from now on, true if they are others than before. Throws core::DomainError beyond the
+  /// table of an element, and then nothing has changed. Collective.
+  bool follow(double speed);
+  /// What joints change with the speed: derivatives of `rates` and `at_rest`, empty where none changes.
+  [[nodiscard]] const Matrices& by_speed() const { return by_speed_; }
+  /// Motions at an element: its node less its other end, along x, y, dx/dz and dy/dz.
+  using Motions = std::vector<std::array<double, 4>>;
+  /// Where elements are without force if they carry no static load [elements].
+  void set_rest(Motions rest);
+  /// How that place moves with the active parameter.
+  void set_rest_rate(Motions rate) { rest_rate_ = std::move(rate); }
+  /// Derivative of load() by the speed with set_rest_rate(): rows here; empty if zero.
+  [[nodiscard]] std::vector<double> load_by_speed() const;
+  /// Motions at the elements from the displacements of all coordinates [2 coordinates()], velocities between them.
+  [[nodiscard]] Motions motions(const double* states) const;
+  /// Forces of an element on its node: -(K (d - rest) + C v) at motions d and velocities v.
+  [[nodiscard]] std::array<double, 4> force(std::size_t element, const std::array<double, 4>& motion,
+                                            const std::array<double, 4>& velocity) const;
   [[nodiscard]] const Unbalances& unbalance() const { return unbalance_; }
   /// Factors of the cosine and the sine parts of the unbalance [1/s^2].
   [[nodiscard]] static std::array<double, 2> unbalance_factors(const Moment& at);
@@ -81,8 +98,8 @@ public:
   /// From now on add() puts the rotor's K times `damping` [s] onto velocities and K x [[0, 1], [-1, 0]] times `turning`
   /// onto displacements: what hysteresis does to a vibration of one frequency. The rows themselves stay.
   void set_loss(double damping, double turning) { loss_ = {damping, turning}; }
-  /// Sets the entries of the pedestals in the same matrices of the whole machine, which hold them already.
-  void set_pedestals(Mat at_rest, Mat rates) const;
+  /// Sets the entries of joints in the same matrices of the whole machine, which hold them already.
+  void set_joints(Mat at_rest, Mat rates) const;
 
   /// A rotor with other numbers; it counts. Collective.
   [[nodiscard]] std::unique_ptr<rotor::Rotor> make_rotor(const rotor::Options& options);
@@ -114,7 +131,20 @@ private:
   /// This rank's rows of a matrix of the rotor: all rows on the first rank if the rotor stands there.
   [[nodiscard]] core::Matrix here(Mat of_rotor) const;
   void make_matrices();
-  void set_pedestals();
+  /// Coordinates that move one end of an element and how: its node +1, its other end -1.
+  using Ends = std::vector<std::pair<PetscInt, double>>;
+  /// K, C and M by places (row, column) of coordinates, rows here.
+  using Joints = std::map<std::pair<PetscInt, PetscInt>, std::array<double, 3>>;
+  /// Those of a train at a speed, or their derivatives by it; all places, zeros too.
+  [[nodiscard]] Joints joints_of(const Train& train, double speed, bool by_speed) const;
+  /// Their places alone.
+  [[nodiscard]] Joints places() const;
+  void join();
+  void find_base();
+  [[nodiscard]] Matrices matrices_of(const Joints& joints, double factor) const;
+  /// += B K rest of the elements that carry no static load, K of `train` at the speed of follow().
+  void add_rest(const Train& train, const Motions& rest, bool by_speed, double factor, std::vector<double>& rows) const;
+  void update_load();
   [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
   [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
   /// What the matrices give on this rank's rows; those that are empty give nothing. Collective.
@@ -130,7 +160,13 @@ private:
   std::vector<std::array<PetscInt, 2>> pedestals_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;
   Matrices matrices_;
-  std::vector<double> load_;
+  std::vector<double> weights_, load_;  // load_ with what elements lack
+  Joints base_, joints_;                // of the rotor at the places of joints; joints
+  Matrices by_speed_;
+  std::optional<double> speed_;  // of joints_, empty where they follow from another train
+  bool varies_ = false;          // joints with the speed
+  std::vector<std::vector<Ends>> ends_;
+  Motions rest_, rest_rate_;
   Unbalances unbalance_;
   std::array<double, 2> loss_{};  // of velocities, of displacements across the planes
 };

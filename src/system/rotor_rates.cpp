@@ -78,32 +78,38 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
       check(MatScale(out.matrices->at_rest.get(), rate(minus.rotor.stiffness_damping, plus.rotor.stiffness_damping)));
     }
   }
-  for (std::size_t i = 0; change.pedestals && i < minus.supports.size(); ++i) {
-    const Support &a = minus.supports[i], &b = plus.supports[i];
-    for (std::size_t d = 0; d < 2; ++d)
-      if (const PetscInt row = pedestals_[i][d]; row >= 0 && owns(row))
-        out.pedestals.push_back(
-            {row, rate(a.mass[d], b.mass[d]), rate(a.damping[d], b.damping[d]), rate(a.stiffness[d], b.stiffness[d])});
+  if (change.joints) {
+    core::require(speed_.has_value(), "joints at the speed");
+    Joints joints = joints_of(plus, *speed_, false);
+    for (const auto& [place, below] : joints_of(minus, *speed_, false))
+      for (std::size_t k = 0; k < 3; ++k) joints[place][k] -= below[k];
+    out.joints = matrices_of(joints, 1 / step);
+  }
+  // What elements lack away from their place of rest.
+  if (!rest_.empty()) {
+    out.load.resize(static_cast<std::size_t>(rows()), 0.0);
+    add_rest(train_, rest_rate_, false, 1, out.load);
+    if (change.joints) {
+      add_rest(plus, rest_, false, 1 / step, out.load);
+      add_rest(minus, rest_, false, -1 / step, out.load);
+    }
   }
   return out;
 }
 
 void RotorPart::apply(const Rates& rates, const Moment& at, double* f) const {
   const auto [c, s] = unbalance_factors(at);
-  const core::Vector sum = rates.matrices ? products(*rates.matrices, at) : core::Vector();
-  const core::ReadArray xa(at.x), da(at.xdot);
   for (PetscInt i = 0; i < rows(); ++i) {
     const auto at_row = static_cast<std::size_t>(i), all = static_cast<std::size_t>(2 * begin_ + i);
     f[i] = rates.load.empty() ? 0.0 : -rates.load[at_row];
     if (rates.unbalance) f[i] -= c * rates.unbalance->cosine[all] + s * rates.unbalance->sine[all];
   }
-  for (const Rates::Pedestal& p : rates.pedestals) {
-    const PetscInt i = 2 * (p.row - begin_);
-    f[i] += p.mass * da[i + 1] + p.damping * xa[i + 1] + p.stiffness * xa[i];
+  for (const std::optional<Matrices>* m : {&rates.matrices, &rates.joints}) {
+    if (!*m) continue;
+    const core::Vector sum = products(**m, at);
+    const core::ReadArray sa(sum.get());
+    for (PetscInt i = 0; i < sa.size(); ++i) f[i] += sa[i];
   }
-  if (!sum) return;
-  const core::ReadArray sa(sum.get());
-  for (PetscInt i = 0; i < sa.size(); ++i) f[i] += sa[i];
 }
 
 }  // namespace whirl::system

@@ -6,6 +6,7 @@
 
 #include "blocks.hpp"
 #include "film_part.hpp"
+#include "rest.hpp"
 #include "rotor_part.hpp"
 #include "settling.hpp"
 #include "slope.hpp"
@@ -83,6 +84,7 @@ void RotorSystem::subtract(std::array<double, 4> film::Response::*of, double* ro
 }
 
 void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
+  prepare_loads(false);
   evaluate_films(x, xdot, film::Need::force);
   const core::WriteArray fa(f);
   for (const Part* part : parts()) part->residual(moment(angle, x, xdot), fa.data() + part->row());
@@ -90,6 +92,7 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
 }
 
 void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
+  prepare();
   if (!j_at_rest_) make_constant_parts();
   if (loss_left_) fill_constant_parts();
   check(MatCopy(j_at_rest_.get(), j, SAME_NONZERO_PATTERN));
@@ -103,6 +106,7 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, doub
 }
 
 void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
+  prepare_loads(true);
   if (varying_.train) return slope().derivative(angle, x, xdot, f);
   evaluate_films(x, xdot, film::Need::tangents);
   const core::WriteArray fa(f);
@@ -127,7 +131,9 @@ std::vector<problem::Field> RotorSystem::fields() const {
 
 problem::Structure* RotorSystem::structure() {
   if (core::size_of(comm_) != 1) return nullptr;
-  if (!blocks_) blocks_ = std::make_unique<MachineBlocks>(*this);
+  if (blocks_) return blocks_.get();
+  prepare();
+  blocks_ = std::make_unique<MachineBlocks>(*this);
   return blocks_.get();
 }
 
@@ -152,7 +158,20 @@ std::vector<double> RotorSystem::film_thickness(const double* x) const {
 }
 
 core::Vector RotorSystem::guess() {
-  return static_guess(*this);
+  if (!rest_) return static_guess(*this);
+  prepare_loads(false);
+  core::Vector x = core::duplicate(rest_->state());
+  check(VecCopy(rest_->state(), x.get()));
+  return x;
+}
+
+std::vector<RotorSystem::ElementState> RotorSystem::elements(const double* x) {
+  prepare_loads(false);
+  const RotorPart::Motions motions = hub_->motions(x);
+  std::vector<ElementState> out;
+  for (std::size_t e = 0; e < motions.size(); ++e)
+    out.push_back({motions[e], hub_->force(e, motions[e], {}), sees_slopes(train_.elements[e]) ? 4 : 2});
+  return out;
 }
 
 // Journals of one node share their coordinates.
@@ -205,6 +224,7 @@ RotorSystem::Loss RotorSystem::loss_at(double frequency) const {
 
 void RotorSystem::set_loss(const Loss& loss) {
   hub_->set_loss(0, 0);
+  prepare();
   if (!j_at_rest_) make_constant_parts();  // in the pattern without
   hub_->set_loss(loss.damping, loss.turning);
   fill_constant_parts();
@@ -227,6 +247,10 @@ int RotorSystem::ports(int b) const {
 
 // They stand at the beginning of a whole state, and of each rank's rows.
 std::vector<double> RotorSystem::shaft(Vec x, int component, bool with_gravity) const {
+  return shaft(hub_states(x).data(), component, with_gravity);
+}
+
+std::vector<double> RotorSystem::hub_states(Vec x) const {
   const int here = static_cast<int>(hub_->rows()), size = core::size_of(comm_);
   std::vector<int> counts(static_cast<std::size_t>(size)), places(counts.size(), 0);
   MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
@@ -234,7 +258,7 @@ std::vector<double> RotorSystem::shaft(Vec x, int component, bool with_gravity) 
   std::vector<double> hub(static_cast<std::size_t>(2 * n_));
   const core::ReadArray xa(x);
   MPI_Allgatherv(xa.data(), here, MPI_DOUBLE, hub.data(), counts.data(), places.data(), MPI_DOUBLE, comm_);
-  return shaft(hub.data(), component, with_gravity);
+  return hub;
 }
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {

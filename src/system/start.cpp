@@ -11,6 +11,7 @@ using core::check;
 core::Vector static_guess(RotorSystem& system) {
   Train train = system.train();
   train.unbalance.clear();
+  std::erase_if(train.elements, [](const Element& e) { return !carries_static_load(e); });
   for (Support& s : train.supports) {
     if (film::facts(s.film).coefficients) continue;
     // Stiff against the film and soft against the shaft's elements, so that the solve keeps its digits.

@@ -45,6 +45,34 @@ inline film::Thd warm_film() {
   return o;
 }
 
+// A spring to a pedestal and one between nodes, which carry load, and a seal that does not: of constant coefficients,
+// seen by slopes, and over the speed.
+inline std::vector<system::Element> varied_elements() {
+  system::Element spring, link, seal;
+  spring.name = "spring";
+  spring.node = 2;
+  spring.to_pedestal = "B1";
+  spring.role = system::Role::support;
+  spring.stiffness = {2e6, 0, 0, 3e6};
+  link.name = "link";
+  link.node = 2;
+  link.to_node = 5;
+  link.damping = {1e3, 0, 0, 2e3};
+  link.slopes = system::SlopeTerms{{{{2e4, 0, 0, 0}, {0, 0, 0, 3e4}, {1e4, 0, 0, 0}}},
+                                   {{{0, 2e2, 0, 0}, {3e2, 0, 0, 0}, {0, 0, 50, 0}}},
+                                   {{{0, 0, 0, 1}, {2, 0, 0, 0}, {0.5, 0, 0, 0}}}};
+  seal.name = "seal";
+  seal.node = 2;
+  seal.role = system::Role::seal;
+  seal.stiffness = {5e6, 2e6, 0, 0};
+  seal.mass = {0, 0, 0, 12};
+  seal.cross_coupling = 1e6;
+  seal.table = {{.speed = 100, .k_xx = 1e6, .k_yy = 1e6, .c_xx = 1e3, .c_ab = 20, .m_xx = 5},
+                {.speed = 300, .k_xx = 3e6, .k_yy = 2e6, .c_xx = 1e3, .c_ab = 30, .m_xx = 6},
+                {.speed = 500, .k_xx = 6e6, .k_yy = 2e6, .c_xx = 2e3, .c_ab = 60, .m_xx = 8}};
+  return {spring, link, seal};
+}
+
 // Reduced shaft; a pedestal, films of several kinds without states, of which two tilt and one is warm; unbalance by
 // amount and by grade.
 inline system::Machine reduced_machine() {
@@ -75,8 +103,10 @@ inline system::Machine reduced_machine() {
   m.bearings[2].lubricant = "";
   m.bearings.push_back(bearing("B4", 2, warm_film(), lemon_bore));
   m.bearings[3].geometry->preload = 0.3;
-  m.gravity = std::array{1.0, -9.0, 2.0};
+  m.gravity = std::array{4.0, -9.0, 2.0};
   m.loads = {{2, {300, -200}, {{10, -20}}}, {5, {0, 50}, {}}};
+  m.elements = varied_elements();
+  m.elements.back().static_load = true;  // F is then linear in what it is linear in without films
   m.unbalance.push_back({"two", {}, {}, "", {{2, {}, 1e-3, {}, 0.4}, {4, {}, 2e-3, {}, 0}}});
   m.unbalance.push_back({"grade", system::BalanceGrade{2.5e-3}, 377, "R", {{3, 1.0, {}, {}, 1}}});
   return m;

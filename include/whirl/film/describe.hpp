@@ -9,6 +9,7 @@ namespace whirl::film {
 
 [[nodiscard]] std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore);
 [[nodiscard]] std::span<const deck::Name<Inlet::Type>> names(Inlet::Type);
+[[nodiscard]] std::span<const deck::Name<Linear::Beyond>> names(Linear::Beyond);
 [[nodiscard]] std::span<const deck::Name<States>> names(States);
 
 void describe(deck::Description<Geometry>& d);

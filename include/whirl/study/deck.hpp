@@ -20,6 +20,7 @@ struct Limits {
 void describe(deck::Description<Limits>& d);
 
 struct Deck {
+  Deck();  ///< the machine finds where it rests by the solvers of studies
   system::Machine machine;
   Limits limits;
   LayoutOptions layout;

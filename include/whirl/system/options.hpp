@@ -87,7 +87,9 @@ struct Machine : Others {
   std::map<std::string, film::Lubricant> lubricants;
   std::vector<Bearing> bearings;       ///< in the order of the deck
   std::optional<double> minimum_film;  ///< of every bearing [m]; film::default_minimum_film() if absent
+  std::vector<Element> elements;       ///< in the order of the deck
   std::vector<Unbalance> unbalance;    ///< in the order of the deck
+  const RestFinder* rest = nullptr;    ///< as Train::rest; not of the deck
 };
 
 void describe(deck::Description<Pedestal>& d);
@@ -105,9 +107,18 @@ void describe_others(deck::Description<Machine>& d);
 
 /// Position of the bearing or unbalance `name`; empty if there is none.
 [[nodiscard]] std::optional<std::size_t> find_bearing(const Machine& machine, std::string_view name);
+[[nodiscard]] std::optional<std::size_t> find_element(const Machine& machine, std::string_view name);
 [[nodiscard]] std::optional<std::size_t> find_unbalance(const Machine& machine, std::string_view name);
 [[nodiscard]] std::vector<std::string> bearing_names(const Machine& machine);
 [[nodiscard]] std::vector<std::string> unbalance_names(const Machine& machine);
+
+/// Nodes at which bearings and elements that are supports hold the shaft, ascending, each once.
+[[nodiscard]] std::vector<int> support_nodes(const Machine& machine);
+
+/// Nodes at which bearings, elements and loads act, which a reduction keeps; of those, nodes whose slopes it keeps.
+/// Ascending, each once.
+[[nodiscard]] std::vector<int> acting_nodes(const Machine& machine);
+[[nodiscard]] std::vector<int> slope_nodes(const Machine& machine);
 
 /// The name by which studies ask for what eccentric and skewed discs do.
 inline constexpr std::string_view unbalance_of_discs = "discs";
@@ -116,10 +127,9 @@ inline constexpr std::string_view unbalance_of_discs = "discs";
 /// Nodes on which the unbalance `name` acts, or its discs stand; empty if there is none.
 [[nodiscard]] std::vector<int> unbalance_nodes(const Machine& machine, std::string_view name);
 
-/// Positions in order of nodes of the two neighbouring bearings between which the middle of rotor `name` lies (of the
-/// whole shaft if it is empty); empty if there is no such rotor or no such pair.
-[[nodiscard]] std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& machine,
-                                                                           std::string_view rotor);
+/// The two neighbouring nodes of support_nodes() between which the middle of rotor `name` lies (of the whole shaft if
+/// it is empty); empty if there is no such rotor or no such pair.
+[[nodiscard]] std::optional<std::array<int, 2>> enclosing_supports(const Machine& machine, std::string_view rotor);
 
 /// M of an unbalance with a grade [kg], for a machine that was checked.
 [[nodiscard]] double graded_mass(const Machine& machine, const Unbalance& unbalance);

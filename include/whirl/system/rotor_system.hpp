@@ -20,7 +20,20 @@ namespace whirl::system {
 class FilmPart;
 class Part;
 class RotorPart;
+class RotorSystem;
 struct Moment;
+
+/// Finds static equilibria: what solvers do, which the equations need where an element carries no static load.
+class RestFinder {
+public:
+  RestFinder() = default;
+  RestFinder(const RestFinder&) = delete;
+  RestFinder& operator=(const RestFinder&) = delete;
+  virtual ~RestFinder() = default;
+  /// x = the equilibrium of `machine` without forcing at its present parameter, which stays; x is near it if `near`.
+  /// Collective; throws core::NotConverged or core::DomainError, on all ranks.
+  virtual void find(RotorSystem& machine, Vec x, bool near) const = 0;
+};
 
 /// A parameter other than the speed: the train as a function of it. Of the system, what depends on it is made anew at
 /// every value, and nothing else.
@@ -47,10 +60,12 @@ struct JournalState : PlaceState {
 /// their place (rotor::StateMatrices); the pairs of its masters are still displacement and velocity. alpha is the
 /// shaft's angular acceleration, whose torque follows the bent axis and adds no moment of its own. f_film acts on the
 /// journal and with the opposite sign on the pedestal. Rows follow the rotor's distribution; pedestals are on its last
-/// rank. A film without own states is evaluated on one rank, film i on rank i mod size; its force and tangents are
-/// summed over the ranks. The own states of films that have some follow behind all pairs (q, v), film by film, with the
-/// rows g(motion, s, s') = 0. They are shared out over all ranks, cut where the films allow it; the rotor then stands
-/// with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+/// rank. Elements stand in M, C and K at the speed; one that carries no static load acts on q - q_rest(p), the motion
+/// about the static equilibrium of the machine without such elements, which the machine finds at every parameter and
+/// whose derivative is in dF/dp. A film without own states is evaluated on one rank, film i on rank i mod size; its
+/// force and tangents are summed over the ranks. The own states of films that have some follow behind all pairs (q, v),
+/// film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks, cut where the films allow it;
+/// the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public Plant, public problem::Settles {
 public:
   /// The speed [rad/s] is the parameter.
@@ -154,6 +169,13 @@ public:
   [[nodiscard]] PetscInt pedestal(int b, int d) const {
     return bearings_[static_cast<std::size_t>(b)].pedestal[static_cast<std::size_t>(d)];
   }
+  /// What an element does to its node [N, N m], and the motion of that less the motion of its other end.
+  struct ElementState {
+    std::array<double, 4> motion{}, force{};
+    int freedoms = 2;  ///< x and y, or with the slopes
+  };
+  /// At a whole state at rest. Collective.
+  [[nodiscard]] std::vector<ElementState> elements(const double* x);
   /// Journal states from a state held as a whole [size()]. Not collective.
   [[nodiscard]] std::vector<JournalState> journals(const double* x) const;
   /// Film responses at a whole state [size()], each evaluated by its ranks; own states of films are held constant. The
@@ -178,6 +200,8 @@ public:
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
   /// The same from a distributed state, of which rotor and pedestals alone are gathered.
   [[nodiscard]] std::vector<double> shaft(Vec x, int component, bool with_gravity) const;
+  /// States of rotor and pedestals of a distributed state, whole on every rank [2 coordinates()]. Collective.
+  [[nodiscard]] std::vector<double> hub_states(Vec x) const;
   /// Force of unbalance per Omega^2 on the rows of rotor and pedestals as cosine and sine parts [2 coordinates()],
   /// whole on every rank. Only of a rotor reduced in state space it acts on rows that are no momentum.
   [[nodiscard]] const std::vector<double>& forcing_cosine() const;
@@ -200,8 +224,14 @@ private:
     std::vector<double> own, rates;
   };
   class Slope;
+  class Rest;
 
   void build();
+  /// Joints at the speed, in all matrices that hold them. Collective.
+  void prepare();
+  /// Also the place of rest of elements that carry no static load, and how it moves with the parameter. Collective;
+  /// throws core::DomainError where there is none.
+  void prepare_loads(bool derivative);
   /// Slopes of the axes of all bearings of a train, as axis() says. Collective.
   [[nodiscard]] std::vector<std::array<double, 2>> axes_of(const Train& train) const;
   void share_out_own_states();
@@ -292,6 +322,7 @@ private:
   core::Vector inputs_;
   std::size_t journal_inputs_ = 0;  // before the own states among them: position and velocity of each end of each port
   std::unique_ptr<MachineBlocks> blocks_;
+  std::unique_ptr<Rest> rest_;                   // null if all elements carry static load
   std::unique_ptr<Slope> slope_;                 // at this value of the parameter, made when first wanted
   std::unique_ptr<Settling> settling_;           // made when first wanted
   std::shared_ptr<const FilmComms> film_comms_;  // of all inverses of the films, made with the first

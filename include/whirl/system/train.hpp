@@ -8,6 +8,7 @@
 
 #include "whirl/film/options.hpp"
 #include "whirl/rotor/options.hpp"
+#include "whirl/system/element.hpp"
 
 namespace whirl::system {
 
@@ -45,13 +46,19 @@ struct StaticLoad {
   friend bool operator==(const StaticLoad&, const StaticLoad&) = default;
 };
 
+class RestFinder;
+
 struct Train {
   rotor::Options rotor;
   double gravity = 9.81;  ///< along -y [m/s^2]
   double gravity_x = 0;   ///< along x [m/s^2]
   std::vector<StaticLoad> loads;
   std::vector<Support> supports;
+  std::vector<Element> elements;
   std::vector<UnbalanceMass> unbalance;
+  /// Finds the static equilibrium about which elements act that carry no static load; machines whose films are all
+  /// linear need none.
+  const RestFinder* rest = nullptr;
 };
 
 }  // namespace whirl::system

@@ -85,10 +85,15 @@ void ScaledPoint::refresh_speed() {
   if (!structure_) return;
   const Index n = structure_->size();
   const VectorXd rows = residual_scale_.head(n).cwiseInverse();
+  const VectorXd columns = state_scale_.head(n);
+  const auto scaled = [&](auto& blocks) {
+    scale(structure_->l0(), rows, columns, blocks.l0);
+    scale(structure_->l1(), rows, columns, blocks.l1);
+  };
   if (sparse_)
-    scale(structure_->l0(), rows, state_scale_.head(n), thin_.l0);
+    scaled(thin_);
   else
-    scale(structure_->l0(), rows, state_scale_.head(n), dense_.l0);
+    scaled(dense_);
 }
 
 void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {

@@ -13,6 +13,11 @@ system::Train with_cut_shaft(system::Train train, int parts) {
   if (parts == 1) return train;
   train.rotor = rotor::divided(train.rotor, parts);
   for (system::Support& s : train.supports) s.node = rotor::node_after(s.node, parts);
+  for (system::StaticLoad& l : train.loads) l.node = rotor::node_after(l.node, parts);
+  for (system::Element& e : train.elements) {
+    e.node = rotor::node_after(e.node, parts);
+    if (e.to_node) e.to_node = rotor::node_after(*e.to_node, parts);
+  }
   for (system::UnbalanceMass& u : train.unbalance) u.node = rotor::node_after(u.node, parts);
   return train;
 }

@@ -18,6 +18,8 @@ StudyResult Alignment::run(Context& context) {
   shaft.reduction = {};
   std::vector<rotor::Support> supports;
   for (const auto& b : context.machine.bearings) supports.push_back({b.node, b.elevation});
+  for (const system::Element& e : context.machine.elements)
+    if (system::holds_shaft(e)) supports.push_back({e.node, 0});
   rotor::AlignmentRule rule;
   for (const auto& name : options.adjust) rule.adjustable.push_back(position(name));
   rule.zero_moment_nodes = options.zero_moment;
@@ -29,7 +31,7 @@ StudyResult Alignment::run(Context& context) {
   const double down = -system::lateral(context.machine.gravity)[1];  // loads come when the machine runs
   const auto as_given = rotor::rigid_static(space, shaft, supports, down);
   const auto elevations = rotor::align(space, shaft, supports, rule, down);
-  for (std::size_t b = 0; b < supports.size(); ++b) supports[b].elevation = elevations[b];
+  for (std::size_t b = 0; b < supports.size(); ++b) supports[b].elevation = elevations[b];  // of other supports zero
   const auto aligned = rotor::rigid_static(space, shaft, supports, down);
 
   auto& summary = context.results.summary();

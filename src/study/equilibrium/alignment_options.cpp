@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 
 #include "whirl/study/equilibrium/alignment.hpp"
 
@@ -24,6 +25,15 @@ void Alignment::validate(const system::Machine& machine, const deck::Report& rep
   if (machine.rotor.type == rotor::Options::Type::rigid)
     return report.fail("", "the alignment is that of a shaft; this rotor is rigid");
   check_held(machine, report);
+  std::map<int, std::string> at;
+  const auto stands = [&](const std::string& name, int node) {
+    if (const auto [first, fresh] = at.emplace(node, name); !fresh)
+      report.fail("", fmt::format("{} and {} both hold node {}: an alignment knows one support at a node",
+                                  first->second, name, node));
+  };
+  for (const system::Bearing& b : machine.bearings) stands("bearing " + b.name, b.node);
+  for (const system::Element& e : machine.elements)
+    if (system::holds_shaft(e)) stands("element " + e.name, e.node);
   check_nodes("zero_moment", options.zero_moment, machine, report);
   for (std::size_t i = 0; i < options.zero_moment.size(); ++i)
     if (const auto here = options.zero_moment.begin() + static_cast<std::ptrdiff_t>(i);

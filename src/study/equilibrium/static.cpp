@@ -147,6 +147,15 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
       if (p >= 0) summary.set("pedestal." + names[b] + "." + axis[d], x[static_cast<std::size_t>(2 * p)], "m");
     }
   }
+  const auto elements = system.elements(x.data());
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const std::string head = "element." + system.train().elements[e].name + ".";
+    for (std::size_t d = 0; d < 2; ++d) {
+      summary.set(head + "force." + axis[d], elements[e].force[d], "N");
+      summary.set(head + axis[d], elements[e].motion[d], "m");
+      if (elements[e].freedoms > 2) summary.set(head + "moment." + axis[d], elements[e].force[2 + d], "N m");
+    }
+  }
   summary.set("power_loss", total_loss, "W");
 }
 

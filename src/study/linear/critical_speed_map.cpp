@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <map>
 
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
@@ -14,7 +15,10 @@ namespace whirl::study {
 void describe(deck::Description<CriticalSpeedMapOptions>& d) {
   using O = CriticalSpeedMapOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("stiffness", &O::stiffness, "N/m", deck::positive, "range of the stiffness of all bearings, equal in x and y")
+  d.add(
+       "stiffness", &O::stiffness, "N/m", deck::positive,
+       "range of the stiffness of each bearing and of each element that is a support, equal in x and y; other elements "
+       "are left out")
       .required();
   d.add("points", &O::points, deck::in(2, 1e6), "values in the range, evenly spaced in the logarithm");
   d.add("count", &O::count, deck::in(1, 1000), "critical speeds of forward and of backward whirl, the lowest ones");
@@ -23,7 +27,7 @@ void describe(deck::Description<CriticalSpeedMapOptions>& d) {
 void CriticalSpeedMap::validate(const system::Machine& machine, const deck::Report& report) const {
   if (machine.rotor.type == rotor::Options::Type::rigid)
     report.fail("", "a rigid rotor has no critical speeds but those of its bearings: give 'rotor' segments");
-  if (machine.bearings.size() < 2) report.fail("", "a shaft on springs needs two bearings");
+  if (system::support_nodes(machine).size() < 2) report.fail("", "a shaft on springs needs two bearings");
   check_held(machine, report);
   if (!(options.stiffness.from < options.stiffness.to))
     report.fail("stiffness", "the range rises: give the smaller stiffness as 'from'");
@@ -39,10 +43,14 @@ StudyResult CriticalSpeedMap::run(Context& context) {
   auto& results = context.results;
   std::vector<rotor::SpringAt> springs;
   std::vector<rotor::Stand> stands;
+  std::map<std::string, int> stand_of;  // by bearing
   for (const system::Support& s : train.supports) {
     springs.push_back({s.node, s.has_pedestal ? static_cast<int>(stands.size()) : -1});
+    stand_of[s.name] = springs.back().stand;
     if (s.has_pedestal) stands.push_back({s.mass, s.stiffness});
   }
+  for (const system::Element& e : train.elements)
+    if (system::holds_shaft(e)) springs.push_back({e.node, e.to_pedestal ? stand_of.at(*e.to_pedestal) : -1});
   const auto count = static_cast<std::size_t>(options.count), points = static_cast<std::size_t>(options.points);
   std::vector<double> stiffness, speeds[2];
   core::agree(context.comm, [&] {

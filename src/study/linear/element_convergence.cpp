@@ -26,8 +26,14 @@ using Complex = std::complex<double>;
 system::Train divided(system::Train train, int parts, rotor::Element element) {
   train = with_cut_shaft(std::move(train), parts);
   train.rotor.element = element;
-  if (element == rotor::Element::timoshenko_hermitian)
+  if (element == rotor::Element::timoshenko_hermitian) {
     for (const system::Support& s : train.supports) train.rotor.joints.push_back(s.node);
+    for (const system::StaticLoad& l : train.loads) train.rotor.joints.push_back(l.node);
+    for (const system::Element& e : train.elements) {
+      train.rotor.joints.push_back(e.node);
+      if (e.to_node) train.rotor.joints.push_back(*e.to_node);
+    }
+  }
   return train;
 }
 

@@ -40,8 +40,7 @@ StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   rotor::Options shaft = context.machine.rotor;
   shaft.reduction = {};
   std::vector<int> pinned;
-  if (options.supports == ModesOptions::Supports::pinned)
-    for (const auto& b : context.machine.bearings) pinned.push_back(b.node);
+  if (options.supports == ModesOptions::Supports::pinned) pinned = system::support_nodes(context.machine);
   const auto frequencies =
       rotor::natural_frequencies(plan(context, Sharing::machine).space, shaft, pinned, options.count);
   auto& summary = context.results.summary();

@@ -35,10 +35,8 @@ public:
         train_(system::train_of(context.machine,
                                 options.orbits ? options.orbits->unbalance : std::vector<std::string>{})) {
     train_.rotor.reduction = {};
-    for (const system::Support& s : train_.supports) {
-      if (std::find(masters_.begin(), masters_.end(), s.node) == masters_.end()) masters_.push_back(s.node);
-      if (film::facts(s.film).tilts) slopes_.push_back(s.node);
-    }
+    masters_ = system::acting_nodes(context.machine);
+    slopes_ = system::slope_nodes(context.machine);
     for (const int node : options.masters)
       if (std::find(masters_.begin(), masters_.end(), node) == masters_.end()) masters_.push_back(node);
   }

@@ -60,11 +60,9 @@ namespace {
 void check_freedoms(const std::string& path, int freedoms, const ReductionErrorsOptions& o,
                     const system::Machine& machine, const deck::Report& report) {
   std::vector<int> nodes(o.masters);
-  int slopes = 0;
-  for (const system::Bearing& b : machine.bearings) {
-    if (std::find(nodes.begin(), nodes.end(), b.node) == nodes.end()) nodes.push_back(b.node);
-    if (film::facts(b.film).tilts) ++slopes;
-  }
+  for (const int node : system::acting_nodes(machine))
+    if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+  const int slopes = static_cast<int>(system::slope_nodes(machine).size());
   const int least = 2 * (static_cast<int>(nodes.size()) + slopes + 1),
             most = 4 * (static_cast<int>(machine.rotor.segments.size()) + 1);
   if (freedoms % 2 != 0)
@@ -80,7 +78,8 @@ void check_freedoms(const std::string& path, int freedoms, const ReductionErrors
 void ReductionErrors::validate(const system::Machine& machine, const deck::Report& report) const {
   if (machine.rotor.type == rotor::Options::Type::rigid)
     return report.fail("", "a rigid rotor has nothing to reduce: give 'rotor' segments");
-  if (machine.bearings.size() < 2) report.fail("", "reductions are compared on a shaft in two bearings or more");
+  if (system::support_nodes(machine).size() < 2)
+    report.fail("", "reductions are compared on a shaft in two bearings or more");
   for (const system::Bearing& b : machine.bearings)
     if (film::facts(b.film, b.geometry.value_or(film::Geometry{})).states > 0)
       return report.fail(
