@@ -143,7 +143,7 @@ std::vector<std::string> warnings(const Deck& d) {
   std::vector<std::string> all = unusual(d);
   const auto add = [&all](std::vector<std::string> lines) { all.insert(all.end(), lines.begin(), lines.end()); };
   add(rotor::advice(d.machine.rotor));
-  add(unbalance_warnings(d.machine));
+  add(machine_warnings(d.machine));
   for (const auto& s : d.studies) add(table_warnings(d.machine, *s));
   const std::vector<std::string> own = all;
   for (const auto& s : d.studies) {
