@@ -221,7 +221,7 @@ std::vector<std::string> node_labels(const std::vector<int>& nodes) {
 
 std::vector<std::string> numbered(std::size_t count, const std::string& word) {
   std::vector<std::string> labels;
-  for (std::size_t k = 1; k <= count; ++k) labels.push_back(fmt::format("{} {}", word, k));
+  for (std::size_t k = 1; k <= count; ++k) labels.push_back(fmt::format("{}{}{}", word, word.empty() ? "" : " ", k));
   return labels;
 }
 

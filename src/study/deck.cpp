@@ -165,7 +165,7 @@ std::vector<std::string> warnings(const Deck& d) {
   std::vector<std::string> all = unusual(d);
   const auto add = [&all](std::vector<std::string> lines) { all.insert(all.end(), lines.begin(), lines.end()); };
   add(rotor::advice(d.machine.rotor));
-  add(unbalance_warnings(d.machine));
+  add(machine_warnings(d.machine));
   for (const auto& s : d.studies) add(table_warnings(d.machine, *s));
   constexpr std::size_t enough = 5;
   for (const system::Element& e : d.machine.elements)

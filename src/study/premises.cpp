@@ -7,8 +7,10 @@
 
 namespace whirl::study {
 
-std::vector<std::string> unbalance_warnings(const system::Machine& machine) {
+std::vector<std::string> machine_warnings(const system::Machine& machine) {
   std::vector<std::string> lines;
+  if (const double up = system::is_rotor(machine) ? system::lateral(machine.gravity)[1] : 0; up > 0)
+    lines.push_back(fmt::format("gravity is {:.6g} m/s^2 along +y: the weight points upwards", up));
   for (const system::Unbalance& u : machine.unbalance) {
     if (!u.grade) continue;
     double sum = 0;

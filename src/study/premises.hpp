@@ -8,8 +8,8 @@
 
 namespace whirl::study {
 
-/// Fractions of a balance grade that do not sum to one, a line each.
-[[nodiscard]] std::vector<std::string> unbalance_warnings(const system::Machine& machine);
+/// Fractions of a balance grade that do not sum to one, a weight that points upwards: a line each.
+[[nodiscard]] std::vector<std::string> machine_warnings(const system::Machine& machine);
 
 /// Speeds of `study` at which the coefficients of a bearing or an element are not known, a line for each.
 [[nodiscard]] std::vector<std::string> table_warnings(const system::Machine& machine, const Study& study);

@@ -341,8 +341,9 @@ void describe(deck::Description<Machine>& d) {
   d.add("title", &Machine::title, "what the deck is about, for the report");
   d.add("system", &Machine::system, "what the equations are those of");
   d.add("rotor", &Machine::rotor, "the shaft, or a rigid mass").only(&Machine::system, rotor).required();
-  d.add("gravity", &Machine::gravity, "m/s^2", non_negative,
-        "acceleration of gravity: one number along -y, or [x, y, z]; along the shaft, z, it loads no bearing")
+  d.add("gravity", &Machine::gravity, "m/s^2", deck::any,
+        "acceleration of gravity: one number along -y (negative: upwards), or [x, y, z]; along the shaft, z, it loads "
+        "no bearing")
       .only(&Machine::system, rotor)
       .continuable();
   d.add("loads", &Machine::loads, "static forces and moments on nodes: a belt, a radial thrust, a misaligned coupling")

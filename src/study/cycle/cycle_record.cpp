@@ -58,7 +58,7 @@ Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
 
 std::vector<io::Table::Column> columns(const system::ShownPlaces& places, const std::string& unit,
                                        std::size_t multipliers) {
-  const std::vector<std::string>&b = places.names, m = io::numbered(multipliers, "multiplier");
+  const std::vector<std::string>&b = places.names, m = io::numbered(multipliers, {});
   const std::string& length = places.unit;
   const auto wide = io::Table::wide;
   return {
