@@ -158,8 +158,9 @@ StudyResult Modes::run(Context& context) {
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
     ModeSearch of_other_mesh;
-    return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh));
+    return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh, false, on.size() > system.size()));
   });
+  bars.tell_shaft(summary, context.machine.rotor);
   ModeReduction reduction(system, walker, sampled);
   ModeTables tables(rotor::node_positions(system.train().rotor), rotor::node_masses(system.train().rotor),
                     options.condition);
