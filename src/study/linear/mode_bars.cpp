@@ -98,10 +98,11 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   if (shaft) bars.add(Axis::shaft, 0.5, on_meshes.back());
   std::size_t k = 0;
   for (const SampledModes& s : sampled)
-    for (const int id : s.ids) {
+    for (std::size_t m = 0; m < s.ids.size(); ++m) {
+      const int id = s.ids[m];
       of_[id].push_back({s.speed, {bars[k].total(), bars[k + 1].total(), bars[k + 2].total()}});
       const double frequency = std::abs(here[k + 1]), part = bars[k + 1].shaft_mesh / frequency;
-      if (shaft && id > 0 && frequency > 0 && std::isfinite(part)) shaft_error_ = std::max(shaft_error_, part);
+      if (shaft && m < s.listed && frequency > 0 && std::isfinite(part)) shaft_error_ = std::max(shaft_error_, part);
       k += 3;
     }
 }

@@ -21,6 +21,7 @@ struct SampledModes {
   double speed = 0;
   std::vector<int> ids;
   std::vector<spectral::ModePoint> modes;
+  std::size_t listed = 0;  ///< the first of them, which results show
 };
 
 /// At most five of n, first and last among them: the speeds at which modes are computed on other meshes.

@@ -153,7 +153,7 @@ StudyResult Modes::run(Context& context) {
 
   std::vector<SampledModes> sampled;
   for (const std::size_t i : few_of(stations.size())) {
-    sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes)});
+    sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes), stations[i].listed});
     for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
