@@ -92,7 +92,7 @@ def semi_major(x, y):
 def describe(shape):
     """Whirl and damping of a mode in words."""
     words = f", {shape.whirl}" if shape.whirl else ""
-    return words + (f"\nlog. decrement {shape.decrement:.3g}" if np.isfinite(shape.decrement) else "")
+    return words + (f"\nlog. decrement {shape.decrement:.3g}" if np.isfinite(shape.decrement) else "\ndiverges" if shape.decrement == -np.inf else "")
 
 
 def nodes_of(z, values):

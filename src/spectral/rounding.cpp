@@ -41,9 +41,10 @@ std::vector<double> DensePencil::rounding() const {
   for (std::size_t k = 0; k < values_.size(); ++k) {
     if (!asked(values_[k])) continue;
     const double size = a_.norm() + std::abs(values_[k]) * b_.norm(), most = std::sqrt(eps) * size / b_.norm();
-    const double first = left.size() > 0
-                             ? eps * size * vectors_[k].norm() * left.row(static_cast<Eigen::Index>(k)).norm()
-                             : 1e-11 * largest;
+    const double left_over = (a_ * vectors_[k] - values_[k] * (b_ * vectors_[k])).norm();
+    const double first =
+        left.size() > 0 ? (eps * size * vectors_[k].norm() + left_over) * left.row(static_cast<Eigen::Index>(k)).norm()
+                        : 1e-11 * largest;
     out[k] = std::isfinite(first) ? std::min(first, most) : most;
   }
   return out;

@@ -16,10 +16,11 @@ public:
   /// The next eigenvalue with real and imaginary part of its right vector (the latter may be empty).
   void add(std::complex<double> value, const std::vector<double>& real, const std::vector<double>& imaginary);
 
-  /// For each eigenvalue added eps (|A| + |lambda| |B|) |x| |y|/|y* B x| with the left vector y, and at most the square
-  /// root of eps times |A| + |lambda| |B| over |B|, which is what rounding does to a double eigenvalue with one vector.
-  /// Zero for eigenvalues whose real part exceeds 1e-9 of the largest modulus; those it cannot decide.
-  /// Source: Stewart and Sun (1990), Matrix Perturbation Theory, sec. VI.2; Frobenius norms.
+  /// For each eigenvalue added (eps (|A| + |lambda| |B|) |x| + |A x - lambda B x|) |y|/|y* B x| with the left vector y:
+  /// what rounding may have done, and what the solver has left. At most the square root of eps times |A| + |lambda| |B|
+  /// over |B|, which is what rounding does to a double eigenvalue with one vector. Zero for eigenvalues whose real part
+  /// exceeds 1e-9 of the largest modulus; those it cannot decide. Source: Stewart and Sun (1990), Matrix Perturbation
+  /// Theory, sec. VI.2; Frobenius norms.
   [[nodiscard]] std::vector<double> rounding() const;
 
   /// What Mode tells of the same name, for each eigenvalue added.

@@ -102,7 +102,13 @@ def textbook(h):
     rest = [m for m in s["modes"] if m["speed"] == 0]
     for m, wanted in zip(rest, (11.66, 14.80, 33.97, 49.19, 97.97, 126.6), strict=True):
         h.close("5.9.4 at rest [Hz]", m["imag"] / (2 * math.pi), wanted, 0.01 if wanted < 100 else 0.1)
-    h.true("it is unstable as soon as it turns", warned(s, "4000 rpm", "unstable"))
+    # Coupled across with a skew part it is unstable at every speed above rest.
+    skew = ["studies=[{modes: {name: m, speeds: [400 rpm, 4000 rpm], count: 6}}]"]
+    s = h.run(h.source / "tests/cases/always_unstable.yaml", "skew", skew, launcher=[])["m"]
+    for speed, low, high in ((400, -0.189, -0.053), (4000, -0.37, -0.17)):
+        worst = [m["log_decrement"] for m in s["modes"] if m["speed"] == speed and m["stability"] == "unstable"]
+        h.true(f"unstable at {speed} rpm", len(worst) >= 3 and warned(s, f"{speed} rpm", "unstable"), str(worst))
+        h.close("    least log decrement", min(worst[:3]), low, 0.006)
     disc = h.source / "inputs/merot/disc_rotor.yaml"
     rest = "studies=[{modes: {name: m, speeds: [0 rad/s], count: 6}}]"
     for element in ("rayleigh", "timoshenko", "timoshenko_linear", "timoshenko_hermitian"):

@@ -1,19 +1,25 @@
 #include "study/linear/mode_bars.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
+#include "whirl/deck/codecs.hpp"
+#include "whirl/rotor/describe.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
 namespace {
 
 constexpr std::size_t most_speeds = 5;
+constexpr double most_by_shaft = 0.01;  // of a frequency, without a warning
 
 void append(std::vector<double>& out, std::complex<double> lambda) {
   out.insert(out.end(), {lambda.real(), lambda.imag(), spectral::log_decrement(lambda)});
@@ -34,6 +40,15 @@ std::vector<double> paired(const std::vector<spectral::ModePoint>& here,
   return out;
 }
 
+// A shape at the nodes of a shaft whose segments were cut in two, at those that were there before: x, then y.
+std::vector<std::complex<double>> every_second(const std::vector<std::complex<double>>& shape) {
+  std::vector<std::complex<double>> out;
+  const std::size_t nodes = shape.size() / 2;
+  for (std::size_t d = 0; d < 2; ++d)
+    for (std::size_t k = 0; k < nodes; k += 2) out.push_back(shape[d * nodes + k]);
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::size_t> few_of(std::size_t n) {
@@ -48,16 +63,24 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
                    const std::vector<SampledModes>& sampled,
                    const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at) {
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
-  any_ = !meshes.empty();
+  const bool shaft = has_shaft_mesh(context.machine);
+  any_ = !meshes.empty() || shaft;
   if (!any_ || sampled.empty()) return;
+  // The last one is that of the shaft. Its nodes that were there before are those of the modes here.
   const auto compute = [&](std::size_t i) {
     std::vector<double> all;
+    const bool of_shaft = i == meshes.size();
     const bool answered = has_answer([&] {
-      system::RotorSystem there(layout.space, with_film_mesh(system::train_of(context.machine), meshes[i].factor),
+      const system::Train given = system::train_of(context.machine);
+      system::RotorSystem there(layout.space,
+                                of_shaft ? with_cut_shaft(given, 2) : with_film_mesh(given, meshes[i].factor),
                                 sampled.front().speed);
       Walker walker(there);
       for (const SampledModes& s : sampled) {
-        const auto numbers = paired(s.modes, modes_at(there, walker.at(s.speed)));
+        auto other = modes_at(there, walker.at(s.speed));
+        if (of_shaft)
+          for (spectral::ModePoint& m : other) m.shape = every_second(m.shape);
+        const auto numbers = paired(s.modes, other);
         all.insert(all.end(), numbers.begin(), numbers.end());
       }
     });
@@ -66,18 +89,33 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   };
   // Each mesh starts anew and leaves nothing behind.
   const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
-  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "film mesh", none);
+  const auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", none);
   std::vector<double> here;
   for (const SampledModes& s : sampled)
     for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);
   Bars bars(here, law_of(context.machine));
   for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
+  if (shaft) bars.add(Axis::shaft, 0.5, on_meshes.back());
   std::size_t k = 0;
   for (const SampledModes& s : sampled)
-    for (const int id : s.ids) {
+    for (std::size_t m = 0; m < s.ids.size(); ++m) {
+      const int id = s.ids[m];
       of_[id].push_back({s.speed, {bars[k].total(), bars[k + 1].total(), bars[k + 2].total()}});
+      const double frequency = std::abs(here[k + 1]), part = bars[k + 1].shaft_mesh / frequency;
+      if (shaft && m < s.listed && frequency > 0 && std::isfinite(part)) shaft_error_ = std::max(shaft_error_, part);
       k += 3;
     }
+}
+
+void ModeBars::tell_shaft(io::StudySummary& summary, const rotor::Options& rotor) const {
+  if (shaft_error_ == 0) return;
+  summary.set("shaft_mesh.largest_error", shaft_error_, "1");
+  if (shaft_error_ > most_by_shaft)
+    summary.warnings.push_back(
+        fmt::format("the mesh of the shaft ({} elements, rotor.element {}) leaves up to {:.2g} % in the frequencies of "
+                    "these modes: "
+                    "cut the segments shorter",
+                    rotor.segments.size(), deck::name_of(rotor.element), 100 * shaft_error_));
 }
 
 std::array<double, 3> ModeBars::at(int id, double speed) const {
@@ -111,7 +149,7 @@ void ModeBars::put(io::Group& spectrum, const std::vector<std::int64_t>& ids, co
     const auto bar = at(static_cast<int>(ids[k]), speeds[k]);
     for (std::size_t i = 0; i < 3; ++i) column[i].push_back(bar[i]);
   }
-  spectrum.put("damping_real_uncertainty", column[0], "1/s", "estimated error from the film mesh");
+  spectrum.put("damping_real_uncertainty", column[0], "1/s", "estimated error from the meshes of films and shaft");
   spectrum.put("frequency_uncertainty", column[1], "rad/s", "likewise");
   spectrum.put("log_decrement_uncertainty", column[2], "1", "likewise");
 }

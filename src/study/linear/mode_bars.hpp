@@ -21,6 +21,7 @@ struct SampledModes {
   double speed = 0;
   std::vector<int> ids;
   std::vector<spectral::ModePoint> modes;
+  std::size_t listed = 0;  ///< the first of them, which results show
 };
 
 /// At most five of n, first and last among them: the speeds at which modes are computed on other meshes.
@@ -28,15 +29,18 @@ struct SampledModes {
 
 class ModeBars {
 public:
-  /// Computes the modes at the same equilibria on other film meshes, each paired by its shape. `modes_at` gives those
-  /// of a system at an equilibrium. Collective.
+  /// Computes the modes at the same equilibria on other film meshes and on the shaft with every segment cut in two,
+  /// each paired by its shape. `modes_at` gives those of a system at an equilibrium. Collective.
   ModeBars(const Context& context, const Layout& layout, Pieces& pieces, const std::vector<SampledModes>& sampled,
            const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at);
 
   /// Bars of the real part [1/s], imaginary part [rad/s] and log decrement of a mode: the larger one of the neighbours,
   /// so that a difference of meshes that vanishes by chance at one speed hides nothing. NaN: unknown.
   [[nodiscard]] std::array<double, 3> at(int id, double speed) const;
-  // All of these give nothing where no film has a mesh.
+  /// The largest error of a frequency by the mesh of the shaft as "shaft_mesh.largest_error" [1], with a warning above
+  /// one per cent that names the element.
+  void tell_shaft(io::StudySummary& summary, const rotor::Options& rotor) const;
+  // All of these give nothing where neither films nor shaft have a mesh.
   /// The same as numbers of a summary.
   [[nodiscard]] std::map<std::string, double> named(int id, double speed) const;
   [[nodiscard]] std::map<std::string, double> as_bar(double error) const;
@@ -50,6 +54,7 @@ private:
   };
   std::map<int, std::vector<Point>> of_;
   bool any_ = false;
+  double shaft_error_ = 0;  // zero: not known
 };
 
 }  // namespace whirl::study

@@ -152,13 +152,14 @@ StudyResult Modes::run(Context& context) {
 
   std::vector<SampledModes> sampled;
   for (const std::size_t i : few_of(stations.size())) {
-    sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes)});
+    sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes), stations[i].listed});
     for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
     ModeSearch of_other_mesh;
-    return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh));
+    return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh, false, on.size() > system.size()));
   });
+  bars.tell_shaft(summary, context.machine.rotor);
   ModeReduction reduction(system, walker, sampled);
   ModeTables tables(rotor::node_positions(system.train().rotor), rotor::node_masses(system.train().rotor),
                     options.condition);

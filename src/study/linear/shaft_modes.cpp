@@ -33,10 +33,11 @@ double participation(const std::vector<Complex>& shape, const std::vector<double
 }  // namespace
 
 std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, int beyond,
-                                   double max_frequency, ModeSearch& search, bool condition) {
+                                   double max_frequency, ModeSearch& search, bool condition, bool quick) {
   const int sought = count + beyond;
   spectral::EigenOptions options;
   options.left = condition;
+  if (quick) options.dense_below = 4 * sought;
   options.count = 2 * sought + 40;
   options.rounding = true;
   std::vector<double> scale;

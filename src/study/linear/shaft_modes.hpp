@@ -51,9 +51,11 @@ struct ModeSearch {
 ///
 /// A motion of the films alone is none of these unless it grows: states are measured in their scales, and where shaft
 /// and pedestals do less than `least_participation` of what the films do, eigenvalues of films that carry their content
-/// along are left to rounding. `condition`: with condition numbers. Collective.
+/// along are left to rounding. `condition`: with condition numbers. `quick`: by iteration also where dense matrices
+/// would do, for machines that serve an error bar. Collective.
 [[nodiscard]] std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, int beyond,
-                                                 double max_frequency, ModeSearch& search, bool condition = false);
+                                                 double max_frequency, ModeSearch& search, bool condition = false,
+                                                 bool quick = false);
 inline constexpr double least_participation = 1e-3;
 
 /// Modes of one speed as numbers, to send them between ranks, and back.
