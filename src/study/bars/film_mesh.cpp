@@ -18,7 +18,7 @@ system::Train with_film_mesh(system::Train train, const std::array<double, 2>& f
 
 MeshLaw law_of(const system::Machine& machine) {
   MeshLaw law;
-  law.shaft_order = order_of_shaft;
+  law.shaft_order = order_of_shaft(machine.rotor.element);
   for (const auto& b : machine.bearings) {
     const film::Facts film = film::facts(b.film);
     if (film.cells[0] == 0) continue;
