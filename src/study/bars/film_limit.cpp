@@ -67,8 +67,10 @@ void MarginSlope::add(double parameter, double margin) {
 double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin) {
   constexpr int most_back = 6, most_looks = 20, most_halvings = 5;
   constexpr double close = 1e-2, exact = 1e-6;  // of what the places differ by; of the parameter
-  double p = place, m = margin(p), slope = here.value(), step = here.step();
-  if (!std::isfinite(slope) || slope == 0 || !(step > 0)) return unknown;
+  // The last step may have been cut to nothing where the contact was located.
+  constexpr double least_step = 1e-2;  // of the parameter
+  double p = place, m = margin(p), slope = here.value(), step = std::max(here.step(), least_step * std::abs(place));
+  if (!std::isfinite(slope) || slope == 0 || step == 0) return unknown;
   for (int k = 0; k < most_back && !std::isfinite(m); ++k, step *= 2) {
     p += std::copysign(step, slope);  // where the film is thicker
     m = margin(p);
