@@ -1,6 +1,7 @@
 #include "study/bars/film_limit.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +104,16 @@ void put_contact(io::StudySummary& summary, double place, const std::string& uni
   auto more = bar.parts(with_time);
   more["uncertainty"] = bar.total();
   summary.set("contact", place, unit, more);
+  constexpr double says_nothing = 0.5;  // of the place
+  if (there.empty() || bar.total() < says_nothing * std::abs(place)) return;
+  std::vector<std::string> others;
+  for (const ContactThere& m : there)
+    if (std::isfinite(m.place)) others.push_back(fmt::format("{:.4g}", m.place));
+  summary.warnings.push_back(
+      fmt::format("where the film becomes too thin hangs on the mesh ({:.4g} {} on this one, {}) and says nothing "
+                  "about the machine",
+                  place, unit,
+                  others.empty() ? "nowhere near it on others" : fmt::format("{} on others", fmt::join(others, ", "))));
 }
 
 std::vector<double> film_column(std::vector<double> thickness, std::size_t places) {
