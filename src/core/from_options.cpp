@@ -40,9 +40,10 @@ void check_tolerances(const std::string& prefix, std::initializer_list<Tolerance
   for (const Tolerance& t : all) {
     const double most = t.relative ? std::max(t.own, rounding) : t.own;
     if (!(t.now <= most))
-      refuse(fmt::format("PETSc option -{}{} {:.3g}: results would be less accurate than their error bars say; give at "
-                         "most {:.3g}, or leave the option out",
-                         prefix, t.option, t.now, most));
+      refuse(
+          fmt::format("PETSc option -{}{} {:.3g}: results would be less accurate than their error bars say; give at "
+                      "most {:.3g}, or leave the option out",
+                      prefix, t.option, t.now, most));
   }
 }
 
@@ -51,8 +52,9 @@ void refuse_given(const std::string& prefix, std::initializer_list<const char*> 
     PetscBool given = PETSC_FALSE;
     check(PetscOptionsHasName(nullptr, prefix.c_str(), (std::string("-") + option).c_str(), &given));
     if (given)
-      refuse(fmt::format("PETSc option -{}{}: it replaces the test of convergence that error bars stand on; leave it out",
-                         prefix, option));
+      refuse(
+          fmt::format("PETSc option -{}{}: it replaces the test of convergence that error bars stand on; leave it out",
+                      prefix, option));
   }
 }
 

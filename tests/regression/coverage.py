@@ -315,10 +315,35 @@ def values(runner, machine):
     return rows
 
 
+# Coefficients of flips on coarse meshes in time against those of a fine one: the branch born there where films are closed forms.
+def criticality(runner, eccentricity):
+    def found(intervals, degree, points):
+        study = ("{cycle_branch: {name: c, unbalance: [a], parameter: speed, range: {from: 320 rad/s, to: 1040 rad/s}, step: {initial: 8 rad/s, "
+                 "min: 0.001 rad/s, max: 32 rad/s}, intervals: %d, degree: %d, points: %s, adapt_mesh: false}}" % (intervals, degree, points))
+        run = runner.run("rigid_rotor/short_f1.yaml", [f"unbalance.a.planes.1.eccentricity={eccentricity} um", f"studies=[{study}]"])
+        return [b for b in run.get("c", {}).get("bifurcations", []) if b["type"] == "flip" and b.get("criticality_coefficient") is not None]
+
+    fine, finer = found(120, 4, "gauss"), found(160, 4, "gauss")
+    rows = []
+    for points in ("radau", "gauss"):
+        for degree in (1, 2, 3):
+            for intervals in (16, 20, 24, 30, 40, 60):
+                for b in found(intervals, degree, points):
+                    truth, check = (min(all, key=lambda t: abs(t["value"] - b["value"])) for all in (finer, fine))
+                    if abs(truth["value"] - b["value"]) > 0.03 * b["value"]:
+                        continue
+                    rows.append(record("criticality", f"a = {eccentricity} um, {points}", f"{intervals}x{degree}", "flip", "rad/s", b["criticality_coefficient"],
+                                       b["criticality_uncertainty"], truth["criticality_coefficient"],
+                                       abs(truth["criticality_coefficient"] - check["criticality_coefficient"]), criticality=b["criticality"],
+                                       verdict_of_truth=truth["criticality"]))
+    return rows
+
+
 GROUPS = {
     "threshold": [(thresholds, v) for v in VARIANTS],
     "cycles": [(cycles, g) for g in ("G2.5", "G6.3")],
     "compliant": [(compliant_hopf, (d, b)) for d in ("short", "long") for b in (0.01, 0.1, 1)],
+    "criticality": [(criticality, e) for e in (2.5, 3.75, 5)],
     "values": [(values, m) for m in MACHINES],
     "compliant_cycles": [(compliant_cycle, d, b) for d, b in sorted({n[:2] for n in NAMED})],
 }

@@ -72,6 +72,30 @@ TEST(ErrorBar, HoldsWhereAFeedThatMovesCancelsTheSpacing) {
   EXPECT_EQ(error_bar(3, {{Axis::around, 2, 3.0}, {Axis::around, 4, 3.0}}, law).total(), 0);
 }
 
+// Multipliers of the rigid rotor at a* = 0.2, 400 rad/s on 10, 20 and 40 Gauss intervals of degree two: the first two
+// agree to 5e-6, and both are off by 3.4e-4 (0.972015 on 160 of degree two).
+TEST(ErrorBar, LeansOnAThirdMeshWhereTwoAgreeByChance) {
+  const double here = 0.97167652, true_one = 0.972015;
+  const MeshLaw law{2, 4};
+  std::vector<Sample> samples{{Axis::time, 0.5, 0.97168202}};
+  EXPECT_LT(error_bar(here, samples, law).total(), 0.1 * (true_one - here)) << "two meshes do not see it";
+  samples.push_back({Axis::time, 0.25, 0.97208832});
+  EXPECT_GE(error_bar(here, samples, law).total(), true_one - here);
+}
+
+// Twice the cells agree too well (an order of 9.6): the coarser mesh says by theory what is left.
+TEST(ErrorBar, BelievesNoOrderAboveTheory) {
+  const std::vector<Sample> samples{{Axis::time, 2, 0.3 * 15}, {Axis::time, 0.5, -0.3 * 15 * std::exp2(-9.6)}};
+  EXPECT_GE(error_bar(0, samples, {2, 4}).total(), 0.3 * (1 - 1e-12));
+}
+
+TEST(ErrorBar, OfAShaftIsThatOfOneCut) {
+  const Bar bar = error_bar(1546.707, {{Axis::shaft, 0.5, 1546.092}}, {});
+  EXPECT_NEAR(bar.shaft_mesh, 3 * 0.615 * 16 / 15, 1e-9);
+  EXPECT_EQ(bar.total(), bar.shaft_mesh);
+  EXPECT_EQ(bar.parts(false).at("uncertainty_shaft_mesh"), bar.shaft_mesh);
+}
+
 TEST(ErrorBar, SeesALowerOrderThanThatOfTheory) {
   const Law law = [](double h, double k) { return 0.3 * h + 0.1 * std::sqrt(k); };
   EXPECT_GE(bar_of(law).total(), error_of(law));
@@ -213,6 +237,21 @@ TEST(ErrorBar, HasEachMeshOnce) {
   };
   EXPECT_EQ(cells({60, 16}), (std::array{std::vector{32, 43, 82, 112}, std::vector{8, 11, 22, 30}}));
   EXPECT_EQ(cells({4, 5}), (std::array{std::vector{5, 7}, std::vector{4, 7, 9}}));
+  // Few cells: four times as many, too.
+  film::Reynolds smooth;
+  const auto smooth_cells = [&](std::array<int, 2> of) {
+    smooth.cells = of;
+    machine.bearings[0].film = smooth;
+    std::array<std::vector<int>, 2> out;
+    for (const FilmMesh& m : film_meshes(machine, layout)) {
+      const std::size_t d = m.axis == Axis::around ? 0 : 1;
+      out[d].push_back(film::facts(film::refined(machine.bearings[0].film, m.factor)).cells[d]);
+    }
+    return out;
+  };
+  EXPECT_EQ(smooth_cells({12, 30}), (std::array{std::vector{6, 24, 48}, std::vector{15, 60}}));
+  EXPECT_EQ(smooth_cells({17, 5})[1], (std::vector{4, 10, 20}));
+  EXPECT_EQ(smooth_cells({60, 16}), (std::array{std::vector{30, 120}, std::vector{8, 32}}));
   // More states than the deck lets bars refine (60 x 8 on half of an aligned pad): coarser ones only, as many.
   film.states = film::States::dynamic;
   EXPECT_EQ(cells({60, 16})[0].back(), 112);

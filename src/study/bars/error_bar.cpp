@@ -19,16 +19,19 @@ struct Estimate {
   double error = 0, doubt = 0;
 };
 
-// Order that the two finest steps of halves or doubles show; theory if there are none, or they show more.
+// Order that steps of halves or doubles show, the lowest where two pairs of steps do; theory if there are none, or they
+// show more: then two meshes agree by chance.
 double order_of(double value, const std::vector<Sample>& samples, double theory) {
   const auto find = [&](double spacing) {
     for (const Sample& s : samples)
       if (std::abs(s.spacing - spacing) < 1e-9) return s.value;
     return nothing;
   };
-  const double coarse = find(2) - value, fine = value - find(0.5);
-  if (!(coarse * fine > 0)) return theory;
-  return std::clamp(std::log2(coarse / fine), least_order, theory);
+  const auto shown = [&](double coarse, double fine) {
+    return coarse * fine > 0 ? std::clamp(std::log2(coarse / fine), least_order, theory) : theory;
+  };
+  const double half = find(0.5), fine = value - half;
+  return std::min(shown(find(2) - value, fine), shown(fine, half - find(0.25)));
 }
 
 Estimate estimate(double value, std::vector<Sample> samples, double theory) {
@@ -150,7 +153,7 @@ Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& l
     }
     const double order = of_film(axis) ? law.film_order : axis == Axis::time ? law.time_order : law.shaft_order;
     const Estimate e = estimate(value, own, order);
-    (of_film(axis)         ? bar.film_mesh
+    (of_film(axis)        ? bar.film_mesh
      : axis == Axis::time ? bar.time_mesh
                           : bar.shaft_mesh) += std::abs(e.error) + e.doubt;
     if (!of_film(axis) || !law.feeds_move) continue;

@@ -1,6 +1,7 @@
 #include "study/bars/film_limit.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,8 +68,10 @@ void MarginSlope::add(double parameter, double margin) {
 double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin) {
   constexpr int most_back = 6, most_looks = 20, most_halvings = 5;
   constexpr double close = 1e-2, exact = 1e-6;  // of what the places differ by; of the parameter
-  double p = place, m = margin(p), slope = here.value(), step = here.step();
-  if (!std::isfinite(slope) || slope == 0 || !(step > 0)) return unknown;
+  // The last step may have been cut to nothing where the contact was located.
+  constexpr double least_step = 1e-2;  // of the parameter
+  double p = place, m = margin(p), slope = here.value(), step = std::max(here.step(), least_step * std::abs(place));
+  if (!std::isfinite(slope) || slope == 0 || step == 0) return unknown;
   for (int k = 0; k < most_back && !std::isfinite(m); ++k, step *= 2) {
     p += std::copysign(step, slope);  // where the film is thicker
     m = margin(p);
@@ -101,6 +104,16 @@ void put_contact(io::StudySummary& summary, double place, const std::string& uni
   auto more = bar.parts(with_time);
   more["uncertainty"] = bar.total();
   summary.set("contact", place, unit, more);
+  constexpr double says_nothing = 0.5;  // of the place
+  if (there.empty() || bar.total() < says_nothing * std::abs(place)) return;
+  std::vector<std::string> others;
+  for (const ContactThere& m : there)
+    if (std::isfinite(m.place)) others.push_back(fmt::format("{:.4g}", m.place));
+  summary.warnings.push_back(
+      fmt::format("where the film becomes too thin hangs on the mesh ({:.4g} {} on this one, {}) and says nothing "
+                  "about the machine",
+                  place, unit,
+                  others.empty() ? "nowhere near it on others" : fmt::format("{} on others", fmt::join(others, ", "))));
 }
 
 std::vector<double> film_column(std::vector<double> thickness, std::size_t places) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "study/bars/shaft_mesh.hpp"
@@ -17,7 +18,7 @@ system::Train with_film_mesh(system::Train train, const std::array<double, 2>& f
 
 MeshLaw law_of(const system::Machine& machine) {
   MeshLaw law;
-  law.shaft_order = order_of_shaft;
+  law.shaft_order = order_of_shaft(machine.rotor.element);
   for (const auto& b : machine.bearings) {
     const film::Facts film = film::facts(b.film);
     if (film.cells[0] == 0) continue;
@@ -33,6 +34,19 @@ double order_in_time(const system::Machine& machine, double scheme) {
   return scheme;
 }
 
+namespace {
+
+constexpr int few_cells = 14;  // half of them shows little of the law, and may be rounded to nearly as many
+
+int fewest_cells(const system::Machine& machine, std::size_t direction) {
+  int out = std::numeric_limits<int>::max();
+  for (const auto& b : machine.bearings)
+    if (const int n = film::facts(b.film).cells[direction]; n > 0) out = std::min(out, n);
+  return out;
+}
+
+}  // namespace
+
 std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOptions& layout) {
   int states = 0;
   for (const auto& b : machine.bearings) states += film::facts(b.film, b.geometry.value_or(film::Geometry{})).states;
@@ -44,6 +58,8 @@ std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOp
     factors = {0.53, 0.71, 1.37, 1.87};  // meshes without common divisors: others see the same kinks alike
   std::vector<FilmMesh> out;
   for (std::size_t d = 0; d < 2; ++d) {
+    std::vector<double> own = factors;
+    if (!kinks && states <= layout.refined_states && fewest_cells(machine, d) < few_cells) own.push_back(4);
     const auto cells_of = [&](const std::array<double, 2>& factor) {
       std::vector<int> cells;
       for (const auto& b : machine.bearings) cells.push_back(film::facts(film::refined(b.film, factor)).cells[d]);
@@ -52,7 +68,7 @@ std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOp
     // Few cells are rounded to the same ones twice; a mesh counts once, and that in use is known.
     std::set<std::vector<int>> met{cells_of({1, 1})};
     const std::vector<int> in_use = *met.begin();
-    for (const double factor : factors) {
+    for (const double factor : own) {
       FilmMesh mesh{d == 0 ? Axis::around : Axis::along, {1, 1}, 1};
       mesh.factor[d] = factor;
       const std::vector<int> cells = cells_of(mesh.factor);

@@ -36,7 +36,8 @@ double roughness(system::Plant& system, const spectral::Mode& mode) {
     PetscInt per_line = 1;
     for (std::size_t b = 0; b < supports.size(); ++b)
       if (supports[b].name == field.name && rotor->own_states(static_cast<int>(b)) > 0)
-        per_line = std::max<PetscInt>(1, rotor->own_states(static_cast<int>(b)) / film::facts(supports[b].film).cells[0]);
+        per_line =
+            std::max<PetscInt>(1, rotor->own_states(static_cast<int>(b)) / film::facts(supports[b].film).cells[0]);
     std::vector<std::complex<double>> phi;
     field.each([&](PetscInt row) { phi.push_back(mode.shape[static_cast<std::size_t>(first + row)]); });
     const auto line = static_cast<std::size_t>(per_line);
@@ -79,10 +80,11 @@ bool is_mesh_wave(const io::Bifurcation& b) {
 }
 
 void warn_of_mesh_wave(const io::Bifurcation& b, io::StudySummary& summary) {
-  summary.warnings.push_back(fmt::format(
-      "the Hopf point at {:.6g} {} is a wave of the film's mesh ({:.1f} cells long) and does not belong to the machine: "
-      "from there on the film is not resolved; use 'differences: upwind' or more cells around the bearing",
-      b.value, b.unit, b.more.at("cells_per_wave")));
+  summary.warnings.push_back(
+      fmt::format("the Hopf point at {:.6g} {} is a wave of the film's mesh ({:.1f} cells long) and does not belong to "
+                  "the machine: "
+                  "from there on the film is not resolved; use 'differences: upwind' or more cells around the bearing",
+                  b.value, b.unit, b.more.at("cells_per_wave")));
 }
 
 }  // namespace whirl::study

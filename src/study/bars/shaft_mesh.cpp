@@ -4,6 +4,10 @@
 
 namespace whirl::study {
 
+double order_of_shaft(rotor::Element element) {
+  return element == rotor::Element::timoshenko ? 2 : 4;
+}
+
 bool has_shaft_mesh(const system::Machine& machine) {
   return system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
          machine.rotor.couplings.empty();

@@ -277,8 +277,7 @@ StudyResult CycleFollower::run() {
   if (keeps_located_) write(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
   if (end.limited && last_)
-    put_contact(results.summary(), end.parameter, unit_, end.bracket, law(),
-                contacts_there(*last_, end.parameter));
+    put_contact(results.summary(), end.parameter, unit_, end.bracket, law(), contacts_there(*last_, end.parameter));
   BranchVerdict verdict = record_.verdict();
   for (const BranchChange& c : changes_) verdict.add(c);
   doubt(verdict);

@@ -244,7 +244,8 @@ std::optional<Parabola> CycleFollower::born_on(const CycleMesh& mesh, const solv
     given.parameter = place * scale_;
     auto there = carried_to(mesh, given);
     if (!there || !correct_there(*there, given)) return {};
-    FlipSeed seed{there->problem->gather(there->u.get()), given};
+    const solve::Cycle cycle = there->problem->gather(there->u.get());
+    FlipSeed seed{cycle, cycle};
     seed.direction.x = there->problem->critical_motion(-1);
     const auto twice = twice_the_period(seed, steps_are_intervals() ? 1 : 1 / mesh.spacing);
     const solve::Restart leaving = leave_flip(*twice, seed);

@@ -46,9 +46,9 @@ std::optional<Parabola> CycleFollower::parabola(solve::PeriodicProblem& problem,
 }
 
 // A branch is supercritical that lives where the old one is unstable.
-void CycleFollower::set_criticality(
-    io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent, double sensitivity,
-    const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere) const {
+void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
+                                    double sensitivity,
+                                    const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere) const {
   const auto born = sensitivity == 0 ? std::nullopt : parabola(problem, u, tangent);
   const bool asked = !b.criticality.empty();
   if (!born) {

@@ -229,8 +229,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton,
                    film_meshes(context.machine, context.layout), law_of(context.machine),
                    [&](const auto& cells) { return plant_of(context, options, cells); },
-                   [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); },
-                   cut, !plan(context, Sharing::machine).large});
+                   [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); }, cut,
+                   !plan(context, Sharing::machine).large});
     });
     put_counts(b, changes.back());
     results.summary().bifurcations.push_back(b);
@@ -299,8 +299,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   }
   put_limits(results.summary(), verdict, changes, scale, si_unit, system->parameter_is_speed());
   if (end.limited)
-    put_contact(results.summary(), end.parameter, unit, end.bracket, law_of(context.machine),
-                contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
+    put_contact(
+        results.summary(), end.parameter, unit, end.bracket, law_of(context.machine),
+        contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
   missed.warn(results.summary());
   bores.warn(results.summary(), unit);
   results.summary().points = end.points;

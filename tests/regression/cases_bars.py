@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Bars that once did not cover, and waves of a film's mesh that once passed for whirl.
+
+cases_bars.py PROGRAM SOURCE
+"""
+import math
+import sys
+
+from harness import Harness, value
+
+h = Harness(sys.argv[1], sys.argv[2], [])
+CASES = h.source / "tests/cases"
+
+
+def run(deck, name, *overrides, code=0):
+    return h.run(str(CASES / deck), name, overrides, code=code)
+
+
+def covers(what, found, bar, truth, longest):
+    h.true(f"{what}: {found:.8g} +- {bar:.2g} covers {truth:.8g}", abs(found - truth) <= bar, f"error {abs(found - truth):.2g}")
+    h.true(f"{what}: its bar is no longer than {longest:g}", bar <= longest)
+
+
+def flips(studies):
+    return [b for b in studies["coarse"]["bifurcations"] if b["type"] == "flip"]
+
+
+# The second flip on 30 Radau intervals of degree two: the branch born there says supercritical on this mesh (-8.7 +- 0.7 rad/s per
+# clearance^2) and subcritical on finer ones (71.9 +- 6.4 on 60 and 160 Gauss intervals of degree four).
+b = flips(run("time_mesh.yaml", "criticality"))[-1]
+covers("criticality of the second flip", b["criticality_coefficient"], b["criticality_uncertainty"], 71.94, 400)
+h.true("which is undetermined on this mesh", b["criticality"] == "undetermined", b["criticality_by"])
+fine = flips(run("time_mesh.yaml", "criticality_fine", "studies.1.cycle_branch.intervals=60", "studies.1.cycle_branch.points=gauss"))[-1]
+h.true("subcritical on 60 Gauss intervals", fine["criticality"] == "subcritical", fine["criticality_by"])
+
+# A multiplier on 10 Gauss intervals, which the doubled mesh repeats to 5e-6 by chance: 0.971677 +- 1.8e-5.
+q = run("time_mesh.yaml", "multiplier", "unbalance.a.planes.1.eccentricity=5 um", "studies.1.cycle_branch.range={from: 395 rad/s, to: 405 rad/s}",
+        "studies.1.cycle_branch.intervals=10", "studies.1.cycle_branch.points=gauss",
+        "studies.1.cycle_branch.at=[400 rad/s]")["coarse"]["values"]["at.400.multiplier.modulus"]
+covers("multiplier at 400 rad/s", q["value"], q["uncertainty"], 0.972015, 5e-3)
+
+# The shaft's own mesh: 629.667 rad/s on 40 elements, where two say 633.075 +- 1e-7.
+b = run("shaft_mesh.yaml", "shaft")["whirl"]["bifurcations"][0]
+covers("Hopf point of a shaft of two elements", b["value"], b["uncertainty"], 629.66693, 20)
+h.true("its bar is that of the shaft", b["uncertainty_shaft_mesh"] > 0.9 * b["uncertainty"])
+covers("whirl frequency", b["whirl_frequency_rad_s"], b["uncertainty_whirl_frequency_rad_s"], 497.19625, 20)
+
+# A wave of the mesh is said to be one, and is no threshold.
+wave = run("mesh_wave.yaml", "central")["load"]
+hopf = [b for b in wave["bifurcations"] if b["type"] == "hopf"]
+h.true("a wave of the mesh is found", len(hopf) == 1 and hopf[0].get("cells_per_wave", 99) < 8, str(hopf))
+h.true("and said to be one", any("wave of the film's mesh" in w for w in wave["warnings"]), str(wave["warnings"]))
+h.true("it is no threshold and no verdict", "threshold" not in wave["values"] and wave["stability"] == "undetermined", wave["stability"])
+upwind = run("mesh_wave.yaml", "upwind", "bearings.half.film.differences=upwind")["load"]
+h.true("upwind differences have none", not upwind["bifurcations"] and upwind["stability"] == "stable throughout", upwind["stability"])
+
+# Tolerances looser than those that bars stand on are refused: a Hopf point 9.8 rad/s off with a bar of 4e-5.
+for option in (["-newton_snes_atol", "1e10"], ["-newton_snes_rtol", "1e-3"], ["-newton_snes_convergence_test", "skip"]):
+    h.run(str(CASES / "time_mesh.yaml"), "loose", flags=["--", *option], code=2)
+    h.true(f"{' '.join(option)} is refused", True)
+
+h.finish()
