@@ -30,7 +30,7 @@ void describe(deck::Description<Duffing>& d) {
   d.add("linear", &O::linear, "1", deck::any, "linear stiffness; below zero there are two wells").continuable();
   d.add("cubic", &O::cubic, "1", deck::any, "cubic stiffness").continuable();
   d.add("amplitude", &O::amplitude, "1", deck::any, "of the force, 0-peak").continuable();
-  d.add("frequency", &O::frequency, "rad/s", deck::positive, "of the force; the speed of its motions");
+  d.add("frequency", &O::frequency, "rad/s", deck::positive, "of the force; the speed of its motions").continuable();
 }
 
 namespace {
