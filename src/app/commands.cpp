@@ -96,7 +96,9 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }
 
-std::string check(MPI_Comm comm, const DeckRequest& request) {
+namespace {
+
+std::string checked(MPI_Comm comm, const DeckRequest& request) {
   const study::Deck deck = study::load(comm, request.path, request.overrides);
   const system::Machine& m = deck.machine;
   const std::string rotor =
@@ -121,6 +123,21 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
   for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += fmt::format("  warning: {}\n", warnings[i]);
   if (warnings.size() > most) text += fmt::format("  and {} more warnings\n", warnings.size() - most);
   return text;
+}
+
+}  // namespace
+
+void check(MPI_Comm comm, const CheckRequest& request, const Print& print) {
+  std::string problems;
+  for (const std::string& path : request.paths) {
+    try {
+      print(checked(comm, {path, request.overrides}));
+    } catch (const core::InputError& e) {
+      if (request.paths.size() == 1) throw;
+      problems += fmt::format("{}{}", problems.empty() ? "" : "\n", e.what());
+    }
+  }
+  if (!problems.empty()) refuse(problems);
 }
 
 std::string list() {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <optional>
 #include <string>
@@ -92,11 +93,11 @@ core::Exit dispatch(CommandLine line, bool prints) {
       "Words behind `--` are options of PETSc: whirl run deck.yaml -- -newton_snes_monitor");
 
   app::RunRequest run;
-  app::DeckRequest check;
+  app::CheckRequest check;
   std::string key;
-  auto deck_options = [](CLI::App* c, app::DeckRequest& r) {
-    c->add_option("DECK", r.path, "input deck (YAML)")->required();
-    c->add_option("--set", r.overrides,
+  auto deck_options = [](CLI::App* c, auto& deck, std::vector<std::string>& overrides, const char* text) {
+    c->add_option("DECK", deck, text)->required();
+    c->add_option("--set", overrides,
                   "PATH=VALUE...: change values. PATH may hold wildcards (bearings.{B2,B3}.geometry.clearance, "
                   "bearings.*.node); "
                   "list items count from 1. VALUE replaces (-20 um too), x1.2 and '+20 %' multiply, 'by +500 um' and "
@@ -106,7 +107,7 @@ core::Exit dispatch(CommandLine line, bool prints) {
         ->type_name("PATH=VALUE");
   };
   CLI::App* run_command = cli.add_subcommand("run", "compute the studies of a deck");
-  deck_options(run_command, run.deck);
+  deck_options(run_command, run.deck.path, run.deck.overrides, "input deck (YAML)");
   run_command->add_option("-o,--output", run.directory, "directory of the results (results/NAME OF DECK if not given)")
       ->type_name("DIR");
   run_command->add_flag("--resume", run.resume,
@@ -118,8 +119,8 @@ core::Exit dispatch(CommandLine line, bool prints) {
                    "end as if killed once N checkpoints have been written, to try --resume")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
-  CLI::App* check_command = cli.add_subcommand("check", "check a deck without computing");
-  deck_options(check_command, check);
+  CLI::App* check_command = cli.add_subcommand("check", "check decks without computing");
+  deck_options(check_command, check.paths, check.overrides, "input decks (YAML)");
   CLI::App* list_command = cli.add_subcommand("list", "list the kinds of studies");
   CLI::App* describe_command = cli.add_subcommand("describe", "explain the options of decks");
   describe_command->add_option("KEY", key, "option or group of options, such as bearings.geometry");
@@ -154,7 +155,7 @@ core::Exit dispatch(CommandLine line, bool prints) {
     (void)std::fflush(stdout);  // a file shows at once what a study of an hour has found
   };
   if (*run_command) exit = app::run(MPI_COMM_WORLD, run, print);
-  if (*check_command) text = app::check(MPI_COMM_WORLD, check);
+  if (*check_command) app::check(MPI_COMM_WORLD, check, print);
   if (*list_command) text = app::list();
   if (*describe_command) text = app::describe(key);
   if (*schema_command) text = app::schema();
@@ -187,7 +188,9 @@ int main(int argc, char** argv) {
     session.emplace(argc, argv);
   } catch (const std::exception& e) {  // every rank reads the same files and environment
     (void)std::fprintf(stderr, "whirl: %s\n", e.what());
-    return static_cast<int>(core::Exit::failure);
+    (void)std::fflush(nullptr);
+    // A thread of the BLAS library that waits for memory would be waited for at an orderly end.
+    std::_Exit(static_cast<int>(core::Exit::failure));
   }
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "io/atomic_file.hpp"
+#include "whirl/io/hdf5.hpp"
 
 namespace whirl::io {
 namespace {
@@ -129,10 +130,11 @@ std::string text_of(const Group& group) {
   return out;
 }
 
-void collect(const Group& group, const std::string& path, std::vector<CsvFile>& out) {
+void collect(const Group& group, const std::string& path, const std::function<void(CsvFile)>& out) {
   if (group.has_attribute("restart")) return;
+  if (is_left(group)) return collect(with_contents(group), path, out);
   if (!path.empty())
-    if (std::string text = text_of(group); !text.empty()) out.push_back({path, std::move(text), {}});
+    if (std::string text = text_of(group); !text.empty()) out({path, std::move(text), {}});
   for (const auto& [name, inner] : group.groups()) collect(inner, path.empty() ? name : path + "." + name, out);
 }
 
@@ -142,15 +144,19 @@ void write_csv(const std::filesystem::path& path, const CsvFile& table) {
   replace_file(path, table.text);
 }
 
-std::vector<CsvFile> csv_tables(const Group& tree) {
-  std::vector<CsvFile> out;
-  collect(tree, "", out);
+void each_csv_table(const Group& tree, const std::function<void(const CsvFile&)>& visit) {
   std::set<std::string> taken;
-  for (CsvFile& table : out) {
+  collect(tree, "", [&](CsvFile table) {
     const std::string name = plain_name(table.name);
     table.file = name + ".csv";
     for (int k = 2; !taken.insert(table.file).second; ++k) table.file = name + "_" + std::to_string(k) + ".csv";
-  }
+    visit(table);
+  });
+}
+
+std::vector<CsvFile> csv_tables(const Group& tree) {
+  std::vector<CsvFile> out;
+  each_csv_table(tree, [&](const CsvFile& table) { out.push_back(table); });
   return out;
 }
 

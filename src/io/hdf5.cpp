@@ -102,13 +102,56 @@ void write_dataset(hid_t at, const std::string& name, const Dataset& data) {
   }
 }
 
+std::vector<std::string> names_of_attributes(hid_t at);
+std::vector<std::string> names_of_links(hid_t at);
+Attribute read_attribute(hid_t at, const char* name);
+
+// Names of attributes of a group that is left in a file: they are never written.
+constexpr const char *left_file = "left in file", *left_place = "left at";
+
+void copy_contents(hid_t to, const Group& group) {
+  const List how(unlocked());
+  const File file(H5Fopen(group.text(left_file).c_str(), H5F_ACC_RDONLY, how));
+  const GroupId from(H5Gopen2(file, group.text(left_place).c_str(), H5P_DEFAULT));
+  for (const std::string& name : names_of_attributes(from))
+    if (!group.has_attribute(name)) write_attribute(to, name, read_attribute(from, name.c_str()));
+  for (const std::string& name : names_of_links(from))
+    check(H5Ocopy(from, name.c_str(), to, name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+}
+
 void write_group(hid_t at, const Group& group) {
-  for (const auto& [name, value] : group.attributes()) write_attribute(at, name, value);
+  for (const auto& [name, value] : group.attributes())
+    if (name != left_file && name != left_place) write_attribute(at, name, value);
+  if (is_left(group)) return copy_contents(at, group);
   for (const auto& [name, data] : group.datasets()) write_dataset(at, name, data);
   for (const auto& [name, sub] : group.groups()) {
     const GroupId g(H5Gcreate2(at, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     write_group(g, sub);
   }
+}
+
+// Callbacks only collect names, so that no exception crosses HDF5's frames.
+std::vector<std::string> names_of_attributes(hid_t at) {
+  std::vector<std::string> names;
+  check(H5Aiterate2(
+      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
+        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+        return 0;
+      },
+      &names));
+  return names;
+}
+std::vector<std::string> names_of_links(hid_t at) {
+  std::vector<std::string> names;
+  check(H5Literate(
+      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+        return 0;
+      },
+      &names));
+  return names;
 }
 
 Attribute read_attribute(hid_t at, const char* name) {
@@ -141,6 +184,8 @@ Attribute read_attribute(hid_t at, const char* name) {
 // A rank and the number of ranks that read together.
 struct Reader {
   std::size_t rank, size;
+  std::filesystem::path file{};
+  std::string left{};  // groups in groups of this name stay in the file
 };
 
 bool written_by_rows(hid_t dataset) {
@@ -204,34 +249,27 @@ Dataset read_dataset(hid_t at, const char* name, const Reader* reader) {
   return data;
 }
 
-Group read_group(hid_t at, const Reader* reader) {
-  // Callbacks only collect names, so that no exception crosses HDF5's frames.
-  std::vector<std::string> attributes, links;
-  check(H5Aiterate2(
-      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-      [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
-        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
-        return 0;
-      },
-      &attributes));
-  check(H5Literate(
-      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-      [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
-        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
-        return 0;
-      },
-      &links));
-  Group group;
-  for (const std::string& name : attributes)
+void read_attributes(hid_t at, Group& group) {
+  for (const std::string& name : names_of_attributes(at))
     std::visit([&](const auto& v) { group.set(name, v); }, read_attribute(at, name.c_str()));
-  for (const std::string& name : links) {
+}
+
+Group read_group(hid_t at, const Reader* reader, const std::string& path = "", bool leave = false) {
+  Group group;
+  read_attributes(at, group);
+  if (leave) {
+    leave_in_file(group, reader->file, path);
+    return group;
+  }
+  for (const std::string& name : names_of_links(at)) {
     H5O_info_t info;
     check(H5Oget_info_by_name2(at, name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT));
     if (info.type == H5O_TYPE_DATASET) {
       group.put(name, read_dataset(at, name.c_str(), reader));
     } else if (info.type == H5O_TYPE_GROUP) {
       const GroupId g(H5Gopen2(at, name.c_str(), H5P_DEFAULT));
-      group.child(name) = read_group(g, reader);
+      const bool in_left = reader && !reader->left.empty() && path.ends_with("/" + reader->left);
+      group.child(name) = read_group(g, reader, path + "/" + name, in_left);
     }
   }
   return group;
@@ -275,10 +313,31 @@ void select_rows(hid_t space, std::size_t begin, std::size_t rows) {
   check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
 }
 
+namespace {
+
+bool leaves_any(const Group& group);
+
+// Straight into the file: what is left elsewhere is not brought into memory.
+void write_through(const std::filesystem::path& path, const Group& root) {
+  replace_file(path, [&](const std::filesystem::path& part) {
+    try {
+      File file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+      write_group(file, root);
+      check(H5Fflush(file, H5F_SCOPE_GLOBAL));
+      file.close();
+    } catch (const core::Error& e) {
+      throw core::Error("cannot write " + path.string() + ": " + e.what());
+    }
+  });
+}
+
+}  // namespace
+
 void write_hdf5(const std::filesystem::path& path, const Group& root) {
   core::require(!is_shared(root), "shared datasets are written by all ranks");
   const Quiet quiet;
   std::string bytes;
+  if (leaves_any(root)) return write_through(path, root);
   try {
     bytes = image_of(root);
   } catch (const core::Error& e) {
@@ -292,8 +351,58 @@ Group read_hdf5(const std::filesystem::path& path) {
 }
 
 Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm) {
-  const Reader reader{static_cast<std::size_t>(core::rank_of(comm)), static_cast<std::size_t>(core::size_of(comm))};
+  return read_hdf5(path, comm, "");
+}
+
+Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm, const std::string& left) {
+  const Reader reader{static_cast<std::size_t>(core::rank_of(comm)), static_cast<std::size_t>(core::size_of(comm)),
+                      path, left};
   return read_file(path, &reader);
+}
+
+void leave_in_file(Group& group, const std::filesystem::path& file, const std::string& place) {
+  Group empty;
+  for (const auto& [name, value] : group.attributes()) std::visit([&](const auto& v) { empty.set(name, v); }, value);
+  empty.set(left_file, file.string());
+  empty.set(left_place, place);
+  group = std::move(empty);
+}
+
+bool is_left(const Group& group) {
+  return group.has_attribute(left_file);
+}
+
+Group with_contents(const Group& group) {
+  if (!is_left(group)) return group;
+  const Quiet quiet;
+  const std::string &path = group.text(left_file), &place = group.text(left_place);
+  try {
+    const List how(unlocked());
+    const File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, how));
+    const GroupId g(H5Gopen2(file, place.c_str(), H5P_DEFAULT));
+    Group out = read_group(g, nullptr);
+    for (const auto& [name, value] : group.attributes())
+      if (name != left_file && name != left_place) std::visit([&](const auto& v) { out.set(name, v); }, value);
+    return out;
+  } catch (const core::Error& e) {
+    throw core::Error("cannot read " + place + " of " + path + ": " + e.what());
+  }
+}
+
+namespace {
+void moved_to(Group& group, const std::string& path, const std::filesystem::path& file) {
+  if (is_left(group)) return leave_in_file(group, file, path);
+  for (const auto& [name, inner] : group.groups()) moved_to(group.child(name), path + "/" + name, file);
+}
+
+bool leaves_any(const Group& group) {
+  return is_left(group) ||
+         std::any_of(group.groups().begin(), group.groups().end(), [](const auto& g) { return leaves_any(g.second); });
+}
+}  // namespace
+
+void moved_to(Group& root, const std::filesystem::path& file) {
+  moved_to(root, "", file);
 }
 
 std::string to_bytes(const Group& root) {

@@ -47,7 +47,7 @@ Writer::Writer(MPI_Comm comm, const Deck& deck, const RunOptions& options)
     if (!options.resume || !fs::exists(directory_ / "summary.json")) return;
     all_ = io::Summary::read(directory_ / "summary.json");
     earlier_seconds_ = all_.wall_seconds;
-    if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5", comm_);
+    if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5", comm_, "variants");
     auto& studies = root_.child("studies");
     for (const auto& s : all_.studies) {
       // What delivered nothing is tried again.
@@ -100,8 +100,9 @@ void Writer::add(StudyResult result) {
   core::agree(comm_, [&] {
     if (rank_ != 0) return;
     if (!result.grids.empty()) io::write_xdmf(this->file(file + ".xdmf"), "results.h5", result.grids);
-    for (const auto& table : io::csv_tables(root_.group("studies").group(file)))
+    io::each_csv_table(root_.group("studies").group(file), [&](const io::CsvFile& table) {
       io::write_csv(this->file("csv/" + io::plain_name(name) + "/" + table.file), table);
+    });
   });
   write();
   core::agree(comm_, [&] {
@@ -125,6 +126,7 @@ void Writer::write() {
   fs::path results;
   core::agree(comm_, [&] { results = file("results.h5"); });
   io::write_hdf5(results, root_, comm_);
+  io::moved_to(root_, results);
   core::agree(comm_, [&] {
     if (rank_ == 0) all_.write(file("summary.json"));
   });

@@ -254,6 +254,13 @@ struct Thd::Work {
     });
   }
 
+  // What all ranks know.
+  [[noreturn]] static void not_found(const char* why) {
+    core::NotConverged error(why);
+    error.mark_agreed();
+    throw error;
+  }
+
   // One round from the temperatures of x; what it changes of them is `out`.
   void round(Vec at, Vec out) {
     const core::ReadArray old(at);
@@ -285,11 +292,8 @@ struct Thd::Work {
       std::copy(temperature.begin(), temperature.end(), t.data());
     }
     solved = energy->solve(film_temperature.get(), finest, left);
-    if (solved.stuck()) {
-      core::NotConverged error("the temperatures of the film were not found: its energy equation did not converge");
-      error.mark_agreed();  // the solver's word is that of all ranks
-      throw error;
-    }
+    if (solved.stuck())  // the solver's word is that of all ranks
+      not_found("the temperatures of the film were not found: its energy equation did not converge");
     cost.energy_newton += solved.newton;
     cost.energy_krylov += solved.krylov;
     {
@@ -302,17 +306,20 @@ struct Thd::Work {
     conduct(journal);
     lap(cost.seconds.solids);
     const core::WriteArray change(out);
-    double largest = 0;
+    double most[2] = {0, 0};  // change; whether a number is none
     PetscInt at_row = 0;
     each_part([&](const std::vector<double>& now) {
       for (const double value : now) {
         change[at_row] = old[at_row] - value;
-        largest = std::max(largest, std::abs(change[at_row]));
+        most[0] = std::max(most[0], std::abs(change[at_row]));
+        if (!std::isfinite(change[at_row])) most[1] = 1;
         ++at_row;
       }
     });
-    MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, rows.comm());
-    cost.largest.push_back(largest);
+    MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, rows.comm());
+    cost.largest.push_back(most[0]);
+    // PETSc would stop at them with an error of its own.
+    if (most[1] > 0) not_found("the temperatures of the film grow beyond all numbers");
   }
 
   // Rounds that still converge go on beyond the number that is allowed to rounds that do not.

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <functional>
+
 #include "whirl/io/record.hpp"
 
 namespace whirl::io {
@@ -24,6 +26,8 @@ struct CsvFile {
 /// all below them, groups with datasets of three axes without labels or of more axes, tables of more than a million
 /// cells, and datasets that fit no table.
 [[nodiscard]] std::vector<CsvFile> csv_tables(const Group& tree);
+/// The same, one after another.
+void each_csv_table(const Group& tree, const std::function<void(const CsvFile&)>& visit);
 
 /// Writes one of them; atomic, makes the folder if it is missing.
 void write_csv(const std::filesystem::path& path, const CsvFile& table);

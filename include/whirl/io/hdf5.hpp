@@ -25,6 +25,18 @@ void write_hdf5(const std::filesystem::path& path, const Group& root, MPI_Comm c
 /// others, whatever their number was when it was written. Does not communicate: agree on its errors.
 [[nodiscard]] Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm);
 
+/// A group whose contents stay in a file until it is written, so that nobody has to hold the results of a thousand
+/// variants. leave_in_file() empties `group` but for its attributes, which stand beside those of the file; what stands
+/// at `place` in `file` is copied as write_hdf5() meets the group (not by the ranks that share datasets there).
+void leave_in_file(Group& group, const std::filesystem::path& file, const std::string& place);
+[[nodiscard]] bool is_left(const Group& group);
+/// A left group with its contents; any other as it is. core::Error if the file does not have them.
+[[nodiscard]] Group with_contents(const Group& group);
+/// From now on what `root` has left stands in `file`, where the groups stand in `root`: after that file was written.
+void moved_to(Group& root, const std::filesystem::path& file);
+/// The same as read_hdf5(path, comm), but all groups in groups of the name `left` stay in the file.
+[[nodiscard]] Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm, const std::string& left);
+
 /// Marks `root` as a results file: attributes title, version, format, and in words the frames, signs and units.
 void describe_results(Group& root, const std::string& title, const std::string& version);
 

@@ -12,6 +12,7 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/one_bearing.hpp"
 #include "study/common.hpp"
+#include "study/pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/system/groups.hpp"
@@ -34,26 +35,53 @@ struct Loaded {
   BearingProfile profile;
 };
 
-// What one rank computes; all do it alike.
+void write(io::Group& g, const Point& p) {
+  std::vector<double> numbers{p.at.eccentricity, p.at.attitude, p.at.sommerfeld, p.at.speed_limit, p.at.whirl_ratio};
+  for (const BearingCoefficients& c : p.coefficients)
+    for (const auto* of : {&c.k, &c.b}) numbers.insert(numbers.end(), of->begin(), of->end());
+  g.put("numbers", std::move(numbers), "1", "the equilibrium, then stiffness and damping of each frequency");
+  g.put("states", p.at.states, "1", "of the film");
+}
+Point read_point(const io::Group& g) {
+  const std::vector<double>& n = g.reals("numbers");
+  Point p{{n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), g.reals("states")}, {}};
+  for (std::size_t k = 5; k + 8 <= n.size(); k += 8) {
+    BearingCoefficients& c = p.coefficients.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) {
+      c.k[i] = n[k + i];
+      c.b[i] = n[k + 4 + i];
+    }
+  }
+  return p;
+}
+
+// What one rank computes, all alike; each point is a piece of the checkpoint, its name begins with `head`. Collective.
 class Mapper {
 public:
-  Mapper(const BearingMapOptions& options, const system::Support& support)
-      : options_(options), bearing_(support, options.speed.value) {}
+  Mapper(const Context& context, Pieces& pieces, std::string head, const BearingMapOptions& options,
+         const system::Support& support)
+      : comm_(context.comm), pieces_(pieces), head_(std::move(head)), options_(options) {
+    core::agree(comm_, [&] { bearing_.emplace(support, options_.speed.value); });
+  }
 
   // The locus ends where journal and bearing touch; some bores carry no vertical load at small eccentricities.
   void follow() {
-    BearingEquilibrium last = bearing_.centred();
+    BearingEquilibrium last;
+    core::agree(comm_, [&] { last = bearing_->centred(); });
     for (int i = 1; i <= options_.points; ++i) {
-      const double wanted = options_.max_eccentricity * i / options_.points;
-      const auto e = reach(last, wanted);
-      if (!e && !bearing_.rigid()) break;
-      if (!e) continue;
-      locus.push_back(complete(*e));
-      last = *e;
+      const auto point = piece(fmt::format("point {}", i), [&]() -> std::optional<Point> {
+        const auto e = reach(last, options_.max_eccentricity * i / options_.points);
+        if (!e) return std::nullopt;
+        return complete(*e);
+      });
+      if (!point && !bearing_->rigid()) break;
+      if (!point) continue;
+      locus.push_back(*point);
+      last = point->at;
     }
   }
 
-  // The first place on the locus where `margin` changes its sign; the bearing is left there.
+  // The first place on the locus where `margin` changes its sign; the bearing is left there. Not collective.
   std::optional<Point> find(const std::function<double(const BearingEquilibrium&)>& margin) {
     for (std::size_t i = 0; i + 1 < locus.size(); ++i) {
       if (margin(locus[i].at) * margin(locus[i + 1].at) > 0) continue;
@@ -71,9 +99,17 @@ public:
   // A load that the map does not reach is refused: whoever asked for it would look for its values in vain.
   void load() {
     for (const double s : options_.sommerfeld) {
-      const auto point = find([s](const BearingEquilibrium& e) { return e.sommerfeld - s; });
+      BearingProfile profile;
+      const auto point = piece(
+          fmt::format("load {:.17g}", s),
+          [&] {
+            auto there = find([s](const BearingEquilibrium& e) { return e.sommerfeld - s; });
+            if (there) profile = bearing_->profile();
+            return there;
+          },
+          &profile);
       if (point)
-        loaded.push_back({s, *point, bearing_.profile()});
+        loaded.push_back({s, *point, profile});
       else
         refuse(s);
     }
@@ -82,26 +118,39 @@ public:
   // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A soft
   // film or one with own states is another one at every speed: its thresholds belong to branches of equilibria.
   void find_threshold(const std::optional<system::Groups>& groups) {
-    if (!groups || !bearing_.rigid()) return;
-    const auto found = find([&](const BearingEquilibrium& e) {
-      return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
+    if (!groups || !bearing_->rigid()) return;
+    const auto found = piece("threshold", [&] {
+      return find([&](const BearingEquilibrium& e) {
+        return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
+      });
     });
     if (found) threshold = found->at;
   }
 
   void squeeze() {
-    if (!bearing_.rigid()) return;
+    if (!bearing_->rigid()) return;
     // W grows like powers of 1/(1 - e): its logarithm is all but linear in log(1 - e).
     const int last = options_.grid - 1;
     for (int i = 0; i <= last; ++i)
       radii.push_back(1 - std::pow(1 - options_.max_eccentricity, static_cast<double>(i) / last));
     for (int j = 0; j <= 2 * last; ++j) angles.push_back(std::numbers::pi * j / last);
-    for (const double e : radii)
-      for (const double phi : angles) {
-        const auto w = bearing_.impedance(e * std::cos(phi), e * std::sin(phi));
-        along.push_back(w[0]);
-        across.push_back(w[1]);
+    for (std::size_t r = 0; r < radii.size(); ++r) {
+      const double e = radii[r];
+      const std::vector<double> row = pieces_.numbers(fmt::format("{}impedance {}", head_, r), [&] {
+        std::vector<double> out;
+        core::agree(comm_, [&] {
+          for (const double phi : angles) {
+            const auto w = bearing_->impedance(e * std::cos(phi), e * std::sin(phi));
+            out.insert(out.end(), w.begin(), w.end());
+          }
+        });
+        return out;
+      });
+      for (std::size_t k = 0; k + 1 < row.size(); k += 2) {
+        along.push_back(row[k]);
+        across.push_back(row[k + 1]);
       }
+    }
   }
 
   std::vector<Point> locus;
@@ -116,11 +165,11 @@ public:
 private:
   // In as few steps as lead there: from a far one the film of a soft bearing may not be found although it exists.
   std::optional<BearingEquilibrium> reach(BearingEquilibrium last, double wanted) {
-    if (bearing_.rigid() || wanted <= last.eccentricity) return bearing_.carrying(wanted, last);
+    if (bearing_->rigid() || wanted <= last.eccentricity) return bearing_->carrying(wanted, last);
     const double shortest = (wanted - last.eccentricity) / 64;
     for (double step = wanted - last.eccentricity; step >= shortest;) {
       const double next = std::min(last.eccentricity + step, wanted);
-      if (auto e = bearing_.carrying(next, last)) {
+      if (auto e = bearing_->carrying(next, last)) {
         if (next == wanted) return e;
         last = std::move(*e);
       } else {
@@ -145,12 +194,32 @@ private:
   }
   Point complete(const BearingEquilibrium& e) {
     Point p{e, {}};
-    for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_.coefficients(ratio));
+    for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_->coefficients(ratio));
     return p;
   }
+  // What `compute` finds, and the profile that it leaves; none if it finds none.
+  std::optional<Point> piece(const std::string& name, const std::function<std::optional<Point>()>& compute,
+                             BearingProfile* profile = nullptr) {
+    const io::Group& kept = pieces_.get(head_ + name, [&](io::Group& g) {
+      std::optional<Point> found;
+      core::agree(comm_, [&] { found = compute(); });
+      if (!found) return;
+      write(g, *found);
+      if (!profile) return;
+      g.put("theta", profile->theta, "rad", "of the profile");
+      g.put("pressure", profile->pressure, "1", "of the profile");
+      g.put("thickness", profile->thickness, "1", "of the profile");
+    });
+    if (!kept.has_dataset("numbers")) return std::nullopt;
+    if (profile) *profile = {kept.reals("theta"), kept.reals("pressure"), kept.reals("thickness")};
+    return read_point(kept);
+  }
 
+  MPI_Comm comm_;
+  Pieces& pieces_;
+  std::string head_;
   const BearingMapOptions& options_;
-  OneBearing bearing_;
+  std::optional<OneBearing> bearing_;
 };
 
 // One column of the locus.
@@ -258,29 +327,31 @@ std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vecto
 }
 
 // The map on other film meshes: bars of the locus and of all that the summary says of it.
-void put_bars(const Context& context, const BearingMapOptions& options, std::size_t which, const Mapper& map,
-              const std::optional<system::Groups>& groups) {
+void put_bars(const Context& context, Pieces& pieces, const BearingMapOptions& options, std::size_t which,
+              const Mapper& map, const std::optional<system::Groups>& groups) {
   io::StudySummary& summary = context.results.summary();
   Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine));
   SummaryBars of_summary(summary, law_of(context.machine));
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  int number = 0;
   for (const FilmMesh& mesh : meshes) {
     std::vector<double> numbers;
     io::StudySummary there;
-    core::agree(context.comm, [&] {
-      const bool answered = has_answer([&] {
-        const system::Train train = with_film_mesh(system::train_of(context.machine), mesh.factor);
-        Mapper other(options, train.supports[which]);
-        other.follow();
-        other.find_threshold(groups);
-        other.load();
-        numbers = numbers_of(other.locus, map.locus);
-        io::Group unused;
-        put_loaded(unused, there, other.loaded);
-        put_threshold(there, other, groups);
-      });
-      if (!answered) numbers.clear();
+    const std::string head = fmt::format("mesh {} ", ++number);
+    const bool answered = has_answer([&] {
+      system::Support support;
+      core::agree(context.comm,
+                  [&] { support = with_film_mesh(system::train_of(context.machine), mesh.factor).supports[which]; });
+      Mapper other(context, pieces, head, options, support);
+      other.follow();
+      other.find_threshold(groups);
+      other.load();
+      numbers = numbers_of(other.locus, map.locus);
+      io::Group unused;
+      put_loaded(unused, there, other.loaded);
+      put_threshold(there, other, groups);
     });
+    if (!answered) numbers.clear();
     bars.add(mesh.axis, mesh.spacing, numbers);
     of_summary.add(mesh.axis, mesh.spacing, there);
   }
@@ -311,36 +382,34 @@ StudyResult BearingMap::run(Context& context) {
   const auto groups = system::groups_of(train);
   put_groups(summary, train);
 
-  std::optional<Mapper> map;
-  core::agree(context.comm, [&] {
-    map.emplace(options, train.supports[which]);
-    map->follow();
-    map->find_threshold(groups);
-    map->load();
-    map->squeeze();
-  });
-  if (map->locus.empty()) throw core::NotConverged("no eccentricity carries a vertical load");
+  Pieces pieces(results, context.resume);
+  Mapper map(context, pieces, "", options, train.supports[which]);
+  map.follow();
+  map.find_threshold(groups);
+  map.load();
+  map.squeeze();
+  if (map.locus.empty()) throw core::NotConverged("no eccentricity carries a vertical load");
 
   group.set("bearing", context.machine.bearings[which].name);
   group.set("speed", options.speed.value);
-  put_locus(group, map->locus, options.frequencies);
-  put_loaded(group, summary, map->loaded);
-  if (!map->radii.empty()) {
+  put_locus(group, map.locus, options.frequencies);
+  put_loaded(group, summary, map.loaded);
+  if (!map.radii.empty()) {
     auto& table = group.child("impedance");
-    const io::Shape shape{map->radii.size(), map->angles.size()};
-    table.put("eccentricity", map->radii, "1", "distance of the journal from the centre, in clearances");
-    table.put("angle", map->angles, "rad", "from the squeeze velocity to the journal, counter-clockwise");
-    table.put("W_along", shape, map->along, "1", "impedance [eccentricity][angle], resisting the squeeze");
-    table.put("W_across", shape, map->across, "1", "impedance [eccentricity][angle], to the left of the squeeze");
-    table.label_each({io::labels_of(map->angles)});
+    const io::Shape shape{map.radii.size(), map.angles.size()};
+    table.put("eccentricity", map.radii, "1", "distance of the journal from the centre, in clearances");
+    table.put("angle", map.angles, "rad", "from the squeeze velocity to the journal, counter-clockwise");
+    table.put("W_along", shape, map.along, "1", "impedance [eccentricity][angle], resisting the squeeze");
+    table.put("W_across", shape, map.across, "1", "impedance [eccentricity][angle], to the left of the squeeze");
+    table.label_each({io::labels_of(map.angles)});
   }
-  put_threshold(summary, *map, groups);
-  put_bars(context, options, which, *map, groups);
-  summary.points = static_cast<long>(map->locus.size());
-  if (!map->refused.empty()) return results.finish(map->refused, false);
-  return results.finish(map->touches() ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
-                                                     map->locus.back().at.eccentricity)
-                                       : "completed",
+  put_threshold(summary, map, groups);
+  put_bars(context, pieces, options, which, map, groups);
+  summary.points = static_cast<long>(map.locus.size());
+  if (!map.refused.empty()) return results.finish(map.refused, false);
+  return results.finish(map.touches() ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
+                                                    map.locus.back().at.eccentricity)
+                                      : "completed",
                         true);
 }
 

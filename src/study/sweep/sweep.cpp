@@ -32,8 +32,21 @@ public:
   void restore() {
     core::agree(comm_, [&] {
       const io::Checkpoint saved(path_);
-      if (saved.exists()) set(saved.load().state);
+      if (!saved.exists()) return;
+      io::Checkpoint::Loaded loaded = saved.load();
+      set(std::move(loaded.state));
+      // Others read the newest file.
+      if (loaded.from_previous && core::rank_of(comm_) == 0) io::Checkpoint(path_).save(state());
     });
+  }
+  // Leaves the results in the checkpoint, which has them, but for what says how each study ended.
+  void leave() {
+    for (const auto& [name, group] : studies().groups()) {
+      io::Group& kept = root_.child("studies").child(name);
+      io::Group brief;
+      brief.set("delivered", kept.integer("delivered"));
+      kept = std::move(brief);
+    }
   }
   // All that there is, and back.
   [[nodiscard]] io::Group state() const {
@@ -119,6 +132,7 @@ StudyResult Sweep::run(Context& context) {
       };
       if (context.resume) stores[k]->restore();
       run_studies(queue.group(), *v.deck, results.shows_progress() ? say : Say(), context.resume, *stores[k]);
+      stores[k]->leave();
       mine[k] = core::rank_of(context.comm);
     });
   } catch (...) {
@@ -153,7 +167,8 @@ StudyResult Sweep::run(Context& context) {
   for (std::size_t k = 0; k < n; ++k) {
     const auto summaries = stores[k]->summaries();
     rows.push_back({variants_[k].name, variants_[k].coordinates, {summaries.begin(), summaries.end()}});
-    io::Group& group = folder.child(io::safe_name(variants_[k].name)) = stores[k]->studies();
+    io::Group& group = folder.child(io::safe_name(variants_[k].name));
+    io::leave_in_file(group, stores[k]->path(), "state/studies");
     group.set("title", variants_[k].name);
     group.set("order", static_cast<int>(k + 1));
     for (const auto& [path, value] : variants_[k].changes) group.set("set " + path, value);
