@@ -192,12 +192,17 @@ def facts():
     both = multipliers.both_of_pairs(np.array([[0.9 + 0.1j, -0.5, 0.0], [0.8 + 0.2j, 0.8 - 0.2j, 0.1]]))
     assert sorted(both[0][np.isfinite(both[0])], key=lambda z: (z.real, z.imag)) == [-0.5, 0.9 - 0.1j, 0.9 + 0.1j]
     assert np.count_nonzero(np.isfinite(both[1])) == 3, "no pair twice"
-    # One degree of freedom under unbalance, zeta = 0.05: peak at 1/sqrt(1 - 2 zeta^2) of height 1/(2 zeta sqrt(1 - zeta^2)).
-    w, zeta = np.linspace(0.3, 3, 400), 0.05
-    (at, top, factor), = response.peaks(w, w**2 / np.sqrt((1 - w**2)**2 + (2 * zeta * w)**2))
-    assert abs(at * np.sqrt(1 - 2 * zeta**2) - 1) < 1e-4 and abs(top * 2 * zeta * np.sqrt(1 - zeta**2) - 1) < 1e-3
-    half = np.sqrt(1 - 2 * zeta**2 + 2 * zeta * np.sqrt(1 - zeta**2) * np.array([-1, 1]))  # where w^2|H| = top/sqrt(2), from 1/w
-    assert abs(factor / (at / (1 / half[0] - 1 / half[1])) - 1) < 0.02, factor
+    # A gap where there is no answer, dashed where no equilibrium is stable; both stretches meet at the last stable speed.
+    class Told:
+        def get(self, name):
+            return {"response/answer": np.array([1, 1, 0, 1, 1, 1]), "response/unstable_count": np.array([0, 0, 0, 0, 2, -1])}[name]
+    figure, axis = response.plt.subplots()
+    response.Validity(Told(), 6).plot(axis, np.arange(6.0), np.arange(6.0), color="k")
+    solid, dashed = axis.lines
+    response.plt.close(figure)
+    assert solid.get_linestyle() == "-" and np.array_equal(solid.get_ydata(), [0, 1, np.nan, 3], equal_nan=True), solid.get_ydata()
+    assert dashed.get_linestyle() == "--" and np.array_equal(dashed.get_ydata(), [3, 4, 5]), (dashed.get_linestyle(), dashed.get_ydata())
+    assert response.is_answer({}) and not response.is_answer({"stability": "undetermined"}) and not response.is_answer({"notes": ["no answer: B1"]})
     from whirl_plot.margins import margins, required_margin
     assert required_margin(2.4, True) == 0 and abs(required_margin(5.0, True) - 0.17 * (1 - 1 / 3.5)) < 1e-12
     assert abs(required_margin(5.0, False) - (0.10 + 0.17 * (1 - 1 / 3.5))) < 1e-12

@@ -90,17 +90,47 @@ def modes(folder):
             "critical.1.speed": {"value": 689.4, "unit": "rpm", "uncertainty": 1.5}, "critical.1.log_decrement": {"value": 0.2, "unit": "1"},
             "critical.1.separation_margin": {"value": 0.12, "unit": "1"}, "critical.1.required_margin": {"value": 0.16, "unit": "1"},
             "threshold": {"value": 5022.2, "unit": "rpm", "uncertainty": 3.1}}
-        studies["generator pair"]["values"] = {
-            f"node.120.peak.{k}.{name}": {"value": v, "unit": u, "uncertainty": b} for k, row in
-            ((1, [(2680.1, "rpm", 0.3), (8.54e-5, "m", 1.6e-7), (14.02, "1", 0.03)]), (2, [(1057.6, "rpm", 0.1), (9.1e-5, "m", 2e-7), (52.4, "1", 0.2)]))
-            for name, (v, u, b) in zip(("speed", "semi_major", "amplification_factor"), row)}
     with results_with(folder, told) as results:
         critical = table_of(results["modes"], "Critical speeds: damped frequency equal to the speed")
         assert critical.rows[0][0] == "689.4 \u00b1 1.5" and critical.rows[0][-3:] == ["12.0 %", "16.0 %", "no"], critical.rows[0]
         assert "unstable from 5022.2 \u00b1 3.1 rpm" in brief.of(results["modes"])
-        peaks = table_of(results["generator pair"], "Peaks of the response, the four largest of each probe").rows
-        assert peaks[0][:4] == ["node 120", "1057.60 \u00b1 0.10", "91.00 \u00b1 0.20", "52.40 \u00b1 0.20"], peaks[0]
-        assert peaks[1][:4] == ["", "2680.10 \u00b1 0.30", "85.40 \u00b1 0.16", "14.020 \u00b1 0.030"], peaks[1]
+
+
+def responses(folder):
+    """The peaks are those of the list in summary.json, in its order; those about unstable equilibria are named only where there is no other."""
+    with results_with(folder, lambda *_: None) as results:
+        study = results["generator pair"]
+        table = table_of(study, "Peaks of the response, the four largest of each probe")
+        assert table.head == ["probe", "peak at [rpm]", "amplitude [\u00b5m]", "amplification", "margin [%]", "required [%]", "enough", "equilibrium", ""], table.head
+        assert table.rows == [
+            ["node 120", "2683.00 \u00b1 0.10", "75.00 \u00b1 0.20", "12.40 \u00b1 0.20", "25.5", "16", "yes", "stable", ""],
+            ["", "5120.00 \u00b1 0.10", "91.00 \u00b1 0.20", "\u2013", "42", "16", "\u2013", "unstable", "no amplification factor: the range ends"],
+            ["B3, journal", "2690.00 \u00b1 0.10", "30.00 \u00b1 0.20", "11.90 \u00b1 0.20", "25", "16", "yes", "stable", ""]], table.rows
+        assert "operating speed 3600 rpm" in table.note, table.note
+        assert brief.of(study) == "largest peak 75 \u00b5m at node 120, 2683 rpm, amplification 12.4", brief.of(study)
+
+    def unstable(studies, _):
+        studies["generator pair"]["stability"] = "unstable throughout"
+        for p in studies["generator pair"]["peaks"]:
+            p["stability"] = "unstable"
+    with results_with(folder, unstable) as results:
+        assert brief.of(results["generator pair"]) == "unstable throughout; 2 peaks, none of which is a motion of the machine"
+
+
+def service(folder):
+    """The page opens with what summary.json knows of the service speed."""
+    def change(_, summary):
+        summary["warnings"] = ["lubricants.oil: a viscosity of 12000 mPa s is unusual"]
+        summary["service_speed"] = {"value": 3600, "unit": "rpm", "facts": [
+            {"what": "stability", "mark": "stable", "study": "balanced, modes"},
+            {"what": "margin in speed to the threshold of stability", "value": 39.2, "unit": "%", "uncertainty": 0.3, "study": "balanced"},
+            {"what": "highest film temperature", "place": "B3", "value": 341.15, "unit": "K", "study": "at service speed"},
+            {"what": "largest vibration", "mark": "not known: no `unbalance_response` gives one at this speed", "study": None}]}
+    with results_with(folder, change) as results:
+        text = report.page_of(results)
+    for words in ("At the service speed, 3600 rpm", "39.20 \u00b1 0.30 %", "68 \u00b0C", "balanced, modes", "not known: no `unbalance_response`", "12000 mPa s is unusual"):
+        assert words in text, words
+    assert text.index("At the service speed") < text.index("In brief") < text.index("The machine</h2>")
 
 
 def sweep(folder):
@@ -231,7 +261,7 @@ def page(folder):
         assert words in text, words
 
 
-for check in (verdicts, sentences, modes, sweep, others_in_brief, options, warnings, foreign, page):
+for check in (verdicts, sentences, modes, responses, service, sweep, others_in_brief, options, warnings, foreign, page):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("the report says what the results say")

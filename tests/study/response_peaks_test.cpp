@@ -55,5 +55,77 @@ TEST(ResponsePeaks, WhatWasNotRefinedIsUnknown) {
   EXPECT_TRUE(std::isnan(p.errors.factor));
 }
 
+// w^2/sqrt((1 - w^2)^2 + (2 z w)^2), the response to unbalance of one mass, has its top at 1/sqrt(1 - 2 z^2) with the
+// height 1/(2 z sqrt(1 - z^2)).
+double unbalanced(double w, double z) {
+  return w * w / std::hypot(1 - w * w, 2 * z * w);
+}
+
+TEST(ResponsePeaks, BetweenSpeedsThePeakIsThatOfTheParabola) {
+  constexpr double z = 0.05;
+  ResponseCurve c;
+  for (int k = 0; k < 400; ++k) {
+    c.speed.push_back(0.3 + 2.7 * k / 399);
+    c.height.push_back(unbalanced(c.speed.back(), z));
+  }
+  ASSERT_EQ(c.tops().size(), 1U);
+  const Peak p = peak_between(c, c.tops().front());
+  EXPECT_NEAR(p.speed * std::sqrt(1 - 2 * z * z), 1, 1e-4);
+  EXPECT_NEAR(p.height * 2 * z * std::sqrt(1 - z * z), 1, 1e-3);
+  // Where it falls to 0.707 of the top: 1/w^2 = 1 - 2 z^2 +- 2 z sqrt(1 - z^2).
+  const double low = 1 / std::sqrt(1 - 2 * z * z + 2 * z * std::sqrt(1 - z * z)),
+               high = 1 / std::sqrt(1 - 2 * z * z - 2 * z * std::sqrt(1 - z * z));
+  EXPECT_NEAR(p.amplification * (high - low) / p.speed, 1, 0.01);
+  EXPECT_TRUE(std::isnan(p.errors.speed));
+}
+
+// Equilibria are known to a tolerance: samples that lie nearer than the curve rises between them jump up and down.
+TEST(ResponsePeaks, NoiseOnARisingCurveMakesNoPeaks) {
+  ResponseCurve c;
+  for (int k = 0; k < 40; ++k) c.speed.push_back(200 + 2.5 * k);
+  for (int k = 0; k < 30; ++k) c.speed.push_back(250 * (1 + 1e-9 * k));
+  std::sort(c.speed.begin(), c.speed.end());
+  for (std::size_t k = 0; k < c.speed.size(); ++k) c.height.push_back(1e-4 * c.speed[k] * (1 + 1e-8 * (k % 2)));
+  EXPECT_TRUE(c.tops().empty());
+}
+
+TEST(ResponsePeaks, NoiseOnATopLeavesOnePeak) {
+  ResponseCurve c;
+  for (int k = -20; k <= 20; ++k) c.speed.push_back(top_speed * (1 + 1e-3 * k));
+  for (int k = -20; k <= 20; ++k) c.speed.push_back(top_speed * (1 + 1e-4 + 3e-5 * k));
+  std::sort(c.speed.begin(), c.speed.end());
+  for (std::size_t k = 0; k < c.speed.size(); ++k) c.height.push_back(height(c.speed[k]) * (1 + 2e-7 * (k % 3)));
+  ASSERT_EQ(c.tops().size(), 1U);
+  EXPECT_NEAR(c.speed[c.tops().front()], top_speed, 1e-4 * top_speed);
+}
+
+TEST(ResponsePeaks, NoSpeedIsAskedForTwice) {
+  EXPECT_EQ(worth_asking({110, 100.00001, 100, 105, 105.00002}, {90, 100, 120}), (std::vector<double>{105, 110}));
+}
+
+// Two resonances, the lower one of which does not come down to 0.707 before the other rises.
+TEST(ResponsePeaks, WhyThereIsNoFactorIsSaid) {
+  ResponseCurve c;
+  for (int k = 0; k <= 400; ++k) {
+    const double s = 200 + 0.5 * k, x = 20 * (s / 280 - 1), y = 20 * (s / 320 - 1);
+    c.speed.push_back(s);
+    c.height.push_back(0.8 / std::sqrt(1 + x * x) + 1 / std::sqrt(1 + y * y));
+  }
+  const auto tops = c.tops();
+  ASSERT_EQ(tops.size(), 2U);
+  const Peak low = peak_at(c, tops[0]), high = peak_at(c, tops[1]);
+  EXPECT_TRUE(std::isnan(low.amplification));
+  EXPECT_NE(low.no_factor.find("above it before a higher peak rises"), std::string::npos) << low.no_factor;
+  EXPECT_GT(high.amplification, 1);
+  EXPECT_TRUE(high.no_factor.empty());
+  ResponseCurve cut;
+  for (std::size_t k = 0; k < c.speed.size() && c.speed[k] < 325; ++k) {
+    cut.speed.push_back(c.speed[k]);
+    cut.height.push_back(c.height[k]);
+  }
+  const Peak last = peak_at(cut, cut.tops().back());
+  EXPECT_NE(last.no_factor.find("before the range ends"), std::string::npos) << last.no_factor;
+}
+
 }  // namespace
 }  // namespace whirl::study

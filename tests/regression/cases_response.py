@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Linear responses of small machines: false peaks, unstable equilibria, amplification, sense, the service speed.
+
+cases_response.py PROGRAM SOURCE [LAUNCHER WORDS...]
+"""
+import json
+import sys
+
+from harness import Harness, value
+
+
+def whole(h, name):
+    return json.loads((h.work / name / "summary.json").read_text())
+
+
+def peaks(study, place):
+    return [p for p in study["peaks"] if p["place"] == place]
+
+
+def warned(study, *words):
+    return any(all(w in line for w in words) for line in study.get("warnings", []))
+
+
+def false_peaks(h):
+    """A thd film whose equilibria are known to their tolerance: node 4 rises at 2044 rpm, node 20 has one peak."""
+    s = h.run(h.source / "tests/cases/false_peaks.yaml", "false_peaks", ["bearings.*.film.cells=[16, 4]", "studies.1.unbalance_response.points=21"])["r"]
+    for place in ("node 4", "node 20"):
+        speeds = [p["speed"]["value"] for p in peaks(s, place)]
+        h.true(f"{place}: no two peaks at one speed", all(abs(a - b) > 1e-4 * a for i, a in enumerate(speeds) for b in speeds[:i]), str(speeds))
+    h.true("node 4 has no peak where it rises", not any(2030 < p["speed"]["value"] < 2060 for p in peaks(s, "node 4")), str(peaks(s, "node 4")))
+    h.true("node 20 has one peak", len(peaks(s, "node 20")) == 1, str(peaks(s, "node 20")))
+
+
+def always_unstable(h):
+    s = h.run(h.source / "tests/cases/always_unstable.yaml", "always_unstable")["r"]
+    h.true("unstable throughout", s["stability"] == "unstable throughout", s["stability"])
+    h.true("a warning", warned(s, "unstable from 400 to 4000 rpm", "no vibration settles"), str(s.get("warnings")))
+    h.true("every peak is marked", s["peaks"] and all(p["stability"] == "unstable" for p in s["peaks"]), str(s["peaks"]))
+    h.true("the largest peaks are there", len(peaks(s, "node 3")) == 2, str(peaks(s, "node 3")))
+
+
+def past_threshold(h):
+    """The threshold is 9572.6 +- 5.7 rpm."""
+    s = h.run(h.source / "tests/cases/past_threshold.yaml", "past_threshold", ["studies.3.unbalance_response.points=23"])["unbalance_response"]
+    unstable, = [w for w in s["warnings"] if "equilibrium is unstable" in w]
+    low, high = float(unstable.split("stable at ")[1].split(")")[0]), float(unstable.split("unstable from ")[1].split(" to ")[0])
+    h.true("unstable from the threshold on", low < 9572.6 + 5.7 and high > 9572.6 - 5.7 and high - low <= 501, unstable)
+    h.true("to the end", "to 12000 rpm" in unstable, unstable)
+
+
+def turbine(h):
+    """Amplification factors of 72; the service speed opens the results."""
+    out = h.run(h.source / "tests/cases/steam_turbine.yaml", "turbine", ["service_speed=7500 rpm", "studies.1.modes.points=13", "studies.2.unbalance_response.points=60"])
+    s = out["G2.5"]
+    high = [p for p in s["peaks"] if (p["amplification_factor"]["value"] or 0) > 60]
+    h.true("a peak with an amplification of 72", any(abs(p["amplification_factor"]["value"] - 72) < 1 for p in high), str(high))
+    h.true("is warned of with its number", warned(s, "amplification factors above 30: 7"), str(s.get("warnings")))
+    h.true("the modes warn as well", warned(out["Campbell"], "amplification factors above 30"), str(out["Campbell"].get("warnings")))
+    h.close("operating speed [rpm]", value(s, "operating_speed"), 7500, 1e-9)
+    service = whole(h, "turbine")["service_speed"]
+    facts = {f["what"]: f for f in service["facts"]}
+    h.close("service speed", service["value"], 7500, 1e-9)
+    h.true("stable there", facts["stability"]["mark"] == "stable", str(facts["stability"]))
+    h.true("critical speeds on either side or one", "critical speed below" in facts, str(facts))
+    h.close("largest vibration [m]", facts["largest vibration"]["value"], max(v["value"] for k, v in s["values"].items() if k.startswith("operating.node.")), 1e-9)
+    h.true("no static, no film", facts["thinnest film"]["study"] is None, str(facts["thinnest film"]))
+
+
+def pump(h):
+    """Water in plain bearings: the Reynolds number is 2680."""
+    s = h.run(h.source / "tests/cases/vertical_pump.yaml", "pump", ["studies=[{static: {name: s, speed: 3000 rpm}}]"])["s"]
+    h.close("Reynolds number", value(s, "bearing.B1.reynolds_number"), 995 * 314.159265 * 0.04 * 150e-6 / 0.7e-3, 1e-6)
+    h.true("is above the laminar limit", warned(s, "bearing B1", "2679", "laminar"), str(s.get("warnings")))
+    s = h.run(h.source / "tests/cases/vertical_pump.yaml", "turbulent", ["studies=[{static: {name: s, speed: 3000 rpm}}]", "bearings.{B1,B2,B3,B4}.film.turbulence=constantinescu",
+                                                                         "lubricants.water.viscosity=700 mPa s"])
+    top = whole(h, "turbulent").get("warnings", [])
+    h.true("no word of laminar films", not warned(s["s"], "laminar"), str(s["s"].get("warnings")))
+    h.true("700 mPa s is an oil", not top, str(top))
+    h.run(h.source / "tests/cases/vertical_pump.yaml", "thick", ["studies=[{static: {name: s, speed: 3000 rpm}}]", "lubricants.water={viscosity: 12 Pa s, density: 0.995 kg/m^3}"], code=None)
+    top = whole(h, "thick").get("warnings", [])
+    h.true("12 Pa s and 0.995 kg/m^3 are not", any("viscosity of 1.2e+04 mPa s" in w for w in top) and any("density of 0.995 kg/m^3" in w for w in top), str(top))
+
+
+if __name__ == "__main__":
+    program, source, *launcher = sys.argv[1:]
+    harness = Harness(program, source, launcher)
+    for case in (false_peaks, always_unstable, past_threshold, turbine, pump):
+        case(harness)
+    harness.finish()

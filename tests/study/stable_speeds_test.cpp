@@ -1,0 +1,60 @@
+// Stability over speeds from a few counts.
+#include "study/linear/stable_speeds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::study {
+namespace {
+
+std::vector<double> speeds(int n) {
+  std::vector<double> out;
+  for (int k = 0; k < n; ++k) out.push_back(100 + k);
+  return out;
+}
+
+TEST(StableSpeeds, TheBorderIsFoundBetweenNeighboursByFewCounts) {
+  std::size_t asked = 0;
+  const StableSpeeds stable(speeds(1000), [&](const std::vector<double>& at) {
+    asked += at.size();
+    std::vector<int> out;
+    for (const double s : at) out.push_back(s < 637 ? 0 : s < 900 ? 2 : 4);
+    return out;
+  });
+  EXPECT_LE(asked, 13U + 2U * 7U);
+  EXPECT_EQ(stable.at(636), 0);
+  EXPECT_EQ(stable.at(637), 2);
+  EXPECT_EQ(stable.at(899), 2);
+  EXPECT_EQ(stable.at(900), 4);
+  EXPECT_EQ(stable.at(636.5), StableSpeeds::unknown);
+  const auto stretches = stable.stretches();
+  ASSERT_EQ(stretches.size(), 2U);
+  EXPECT_EQ(stretches[1].from, 637);
+  EXPECT_EQ(stretches[1].to, 1099);
+  io::StudySummary summary;
+  put_verdict(summary, stable, "rad/s");
+  EXPECT_EQ(summary.stability, "unstable from 637 to 1099 rad/s (stable at 636)");
+  ASSERT_EQ(summary.warnings.size(), 1U);
+  EXPECT_NE(summary.warnings[0].find("unstable from 637 to 1099 rad/s (stable at 636)"), std::string::npos);
+}
+
+TEST(StableSpeeds, WhatIsNotKnownIsUndetermined) {
+  const auto all = [](int number) {
+    return StableSpeeds(speeds(5), [number](const auto& at) { return std::vector<int>(at.size(), number); });
+  };
+  io::StudySummary stable, unknown, unstable;
+  put_verdict(stable, all(0), "rad/s");
+  put_verdict(unknown, all(StableSpeeds::unknown), "rad/s");
+  put_verdict(unstable, all(2), "rad/s");
+  EXPECT_EQ(stable.stability, "stable throughout");
+  EXPECT_TRUE(stable.warnings.empty());
+  EXPECT_EQ(unknown.stability, "undetermined throughout");
+  EXPECT_EQ(unknown.warnings.size(), 1U);
+  EXPECT_EQ(unstable.stability, "unstable throughout");
+  EXPECT_EQ(unstable.warnings.size(), 1U);
+}
+
+}  // namespace
+}  // namespace whirl::study
