@@ -462,6 +462,10 @@ def chance(missed, bars):
 
 
 # Named cycles are few; of all else many are asked for, and few judged mean that runs failed.
+def of_flips(rows):
+    return {r["group"] for r in rows} == {"criticality"}
+
+
 def check(rows):
     least = len(NAMED) if {r["group"] for r in rows} == {"compliant cycles"} else 20
     d = digest(rows)
@@ -470,7 +474,10 @@ def check(rows):
     by_chance = chance(missed, kinks["judged"])
     print(d, "\nwithout kinks", regular, "\nwith kinks", kinks, f"\nprobability of {missed} misses or more at 95 %: {by_chance:.3g}")
     good = regular["cover"] >= 0.99 * regular["judged"] and by_chance >= 0.05
-    return 0 if d["judged"] > least and good and d["median"] <= 5 else 1
+    wrong = [r for r in rows if r["criticality"] not in (r["verdict_of_truth"], "undetermined")] if of_flips(rows) else []
+    print(f"{len(wrong)} wrong verdicts")
+    # The bar of a branch born at a flip holds its term of fourth order, which is the same on all meshes.
+    return 0 if d["judged"] > least and good and not wrong and (d["median"] <= 5 or of_flips(rows)) else 1
 
 
 if __name__ == "__main__":
