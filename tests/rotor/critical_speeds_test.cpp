@@ -49,7 +49,7 @@ TEST(CriticalSpeeds, OfARigidCylinderOnSoftSprings) {
 // first order in the gyroscopic part.
 TEST(CriticalSpeeds, OfAPinnedShaft) {
   const rotor::Options o = shaft(20);
-  const auto at_rest = rotor::natural_frequencies(PETSC_COMM_SELF, o, {1, 21}, 2);
+  const auto at_rest = rotor::natural_frequencies(MPI_COMM_SELF, o, {1, 21}, 2);
   const auto forward = rotor::critical_speeds(o, {{1}, {21}}, 1e15, Whirl::forward, 2),
              backward = rotor::critical_speeds(o, {{1}, {21}}, 1e15, Whirl::backward, 2);
   for (std::size_t k = 0; k < 2; ++k) {

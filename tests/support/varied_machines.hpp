@@ -107,8 +107,8 @@ inline system::Machine reduced_machine() {
   m.loads = {{2, {300, -200}, {{10, -20}}}, {5, {0, 50}, {}}};
   m.elements = varied_elements();
   m.elements.back().static_load = true;  // F is then linear in what it is linear in without films
-  m.unbalance.push_back({"two", {}, {}, "", {{2, {}, 1e-3, {}, 0.4}, {4, {}, 2e-3, {}, 0}}});
-  m.unbalance.push_back({"grade", system::BalanceGrade{2.5e-3}, 377, "R", {{3, 1.0, {}, {}, 1}}});
+  m.unbalance.push_back({"two", {}, {}, "", {}, {{2, {}, 1e-3, {}, 0.4}, {4, {}, 2e-3, {}, 0}}});
+  m.unbalance.push_back({"grade", system::BalanceGrade{2.5e-3}, 377, "R", {}, {{3, 1.0, {}, {}, 1}}});
   return m;
 }
 
@@ -174,7 +174,7 @@ inline system::Machine rigid_machine() {
   m.bearings.push_back(bearing("B2", 1, gas, film::Geometry::Bore::cylindrical));
   m.bearings[1].lubricant = film::Lubricant{1.8e-5, 1.2};
   m.loads = {{1, {20, -30}, {}}};
-  m.unbalance.push_back({"one", {}, {}, "", {{1, {}, {}, 2e-5, 0.3}}});
+  m.unbalance.push_back({"one", {}, {}, "", {}, {{1, {}, {}, 2e-5, 0.3}}});
   return m;
 }
 

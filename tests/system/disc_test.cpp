@@ -161,7 +161,7 @@ void expect_near(Complex found, Complex wanted) {
 // is what the shaft transmits; no moment alpha I_p (dy/dz, -dx/dz) is left beside it.
 TEST(Disc, ItsRowsAreTheRateOfMomentumOfABodyOfMasses) {
   system::Machine m = machine();
-  m.gravity = 0;
+  m.gravity = 0.0;
   using rotor::Freedom;
   const int at = rotor::full_coordinate(node, Freedom::x), tilt = rotor::full_coordinate(node, Freedom::slope_x);
   const Eigen::VectorXd rows = rows_of_disc(m, moving, {{at, moving.place}, {tilt, moving.lean}});
@@ -178,7 +178,7 @@ TEST(Disc, ItsRowsAreTheRateOfMomentumOfABodyOfMasses) {
 // On a hub the same body leans as the line through both ends: moments are couples of forces there.
 TEST(Disc, OnAHubItsMomentsAreForcesAtTheEnds) {
   system::Machine m = machine();
-  m.gravity = 0;
+  m.gravity = 0.0;
   m.rotor.discs[0].hub = {3, 5};
   const double length = 0.2;
   Body b = moving;
