@@ -45,7 +45,7 @@ def pump(h):
     h.true("modes with seals differ", all(abs(a["imag"] - b["imag"]) > 1 for a, b in zip(s["modes"]["modes"], two)))
     for ranks in ("2", "3"):
         few = "studies=[{static: {name: at speed, speed: 5000 rpm}}, {modes: {name: modes, speeds: [5000 rpm], count: 4}}]"
-        r = h.run(deck(h, "feed_pump_elements"), f"ranks {ranks}", [few, "layout.error_bars=none"], launcher=[*h.launcher, "-n", ranks])
+        r = h.run(deck(h, "feed_pump_elements"), f"ranks {ranks}", [few, "layout.machine=all_ranks"], launcher=[*h.launcher, "-n", ranks])
         for a, b in zip(r["modes"]["modes"], s["modes"]["modes"], strict=True):
             same(h, f"modes on {ranks} ranks", a["imag"], b["imag"], 1e-7)
         same(h, f"load on {ranks} ranks", value(r["at speed"], "load.DE"), value(s["at speed"], "load.DE"), 1e-7)
