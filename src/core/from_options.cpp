@@ -80,8 +80,7 @@ void set_from_options(SNES solver, std::initializer_list<const char*> types) {
   char type[64] = "";
   PetscBool given = PETSC_FALSE;
   check(PetscOptionsGetString(nullptr, prefix.c_str(), "-snes_type", type, sizeof type, &given));
-  if (given &&
-      std::none_of(types.begin(), types.end(), [&](const char* one) { return std::string_view(type) == one; }))
+  if (given && std::none_of(types.begin(), types.end(), [&](const char* one) { return std::string_view(type) == one; }))
     refuse(fmt::format("PETSc option -{}snes_type {}: this solver can be {}", prefix, type, fmt::join(types, ", ")));
   const NonlinearTolerances own(solver);
   check(SNESSetFromOptions(solver));

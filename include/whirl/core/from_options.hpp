@@ -15,8 +15,8 @@ namespace whirl::core {
 /// Types that solve by Newton's method with a Jacobian.
 inline constexpr std::initializer_list<const char*> newton_types = {SNESNEWTONLS, SNESNEWTONTR};
 
-/// XXXSetFromOptions(), after which the tolerances may be tighter than the ones set before, not looser: what a number is
-/// off by is in its error bar with the program's own tolerance. Relative ones up to 1e-14 are rounding. Throws
+/// XXXSetFromOptions(), after which the tolerances may be tighter than the ones set before, not looser: what a number
+/// is off by is in its error bar with the program's own tolerance. Relative ones up to 1e-14 are rounding. Throws
 /// InputError, on all ranks, that names the option, its value, and the largest one that is taken; also for
 /// -PREFIX_snes_convergence_test and -PREFIX_eps_conv_..., which replace the test itself. Collective.
 /// A nonlinear solver may be one of `types`; InputError if the options ask for another type, which would need what the

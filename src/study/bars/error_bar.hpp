@@ -17,7 +17,9 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 enum class Axis { around, along, time, shaft };
 inline constexpr std::array<Axis, 4> all_axes{Axis::around, Axis::along, Axis::time, Axis::shaft};
 /// Of a film.
-[[nodiscard]] constexpr bool of_film(Axis axis) { return axis == Axis::around || axis == Axis::along; }
+[[nodiscard]] constexpr bool of_film(Axis axis) {
+  return axis == Axis::around || axis == Axis::along;
+}
 
 /// The same number on a mesh that differs in one direction; `spacing` is its spacing over that of the mesh in use. NaN:
 /// it could not be had there.
@@ -60,11 +62,11 @@ struct Bar {
 ///
 ///     e_i = (Q(1) - Q(r_i))/(1 - r_i^p)
 ///
-/// with p from theory or, where three meshes show a smaller one, as observed (not below 1/2). The finest sample gives
-/// the error. What the others say differently, and a quarter of the largest of them, is the doubt. Errors of the two
-/// film directions may cancel, and do so differently on each mesh: absolute values are added, bar = sum |e| + sum
-/// doubt, which is zero only where all meshes agree. A direction with one sample cannot show its order: its bar is
-/// three times |e| (Roache 1994).
+/// with p from theory or, where three meshes show a smaller one, as observed (not below 1/2); a larger one is not
+/// believed. The finest sample gives the error. What the others say differently, and a quarter of the largest of them,
+/// is the doubt. Errors of the two film directions may cancel, and do so differently on each mesh: absolute values are
+/// added, bar = sum |e| + sum doubt, which is zero only where all meshes agree. A direction with one sample cannot show
+/// its order: its bar is three times |e| (Roache 1994).
 ///
 /// Where feeds move from mesh to mesh, each number has the error of another place in it, which may cancel what the
 /// spacing does: the spread of all meshes is added, which is zero only where they all agree.

@@ -64,7 +64,8 @@ private:
 /// last step of the branch, came from. Not a number if the margin turns or does not come to zero.
 [[nodiscard]] double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin);
 
-/// Puts the place of contact into the summary, its bar from the places on other meshes.
+/// Puts the place of contact into the summary, its bar from the places on other meshes, and a warning where the bar is
+/// unknown or longer than half the place: thin films of soft liners have no limit on finer meshes.
 void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, const MeshLaw& law,
                  const std::vector<ContactThere>& there);
 

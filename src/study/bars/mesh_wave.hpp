@@ -11,9 +11,9 @@ namespace whirl::study {
 
 /// How far a mode is a wave in the thickness of a compliant film that its mesh does not resolve.
 ///
-/// A thin film carries its thickness around with half the surface speed. Differences on a mesh do not carry waves of few
-/// cells at all (central ones of four cells, d omega/dk = 0), so that they stay where the film is thin and its pressure
-/// below that of the ambient, and grow there: each mesh has others. Of the shape phi_k along the nodes around
+/// A thin film carries its thickness around with half the surface speed. Differences on a mesh do not carry waves of
+/// few cells at all (central ones of four cells, d omega/dk = 0), so that they stay where the film is thin and its
+/// pressure below that of the ambient, and grow there: each mesh has others. Of the shape phi_k along the nodes around
 ///
 ///     r = sum |phi_(k+1) - phi_k|^2/sum |phi_k|^2 = 4 sin^2(pi/n)
 ///

@@ -123,9 +123,8 @@ private:
   /// distance from its border of stability over the scaled parameter. A verdict that `b` has already is only doubted.
   [[nodiscard]] std::optional<Parabola> parabola(solve::PeriodicProblem& problem, Vec u, Vec tangent) const;
   /// `elsewhere` is the parabola on another time mesh; without it the bar holds no time mesh.
-  void set_criticality(
-      io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent, double sensitivity,
-      const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere = {}) const;
+  void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent, double sensitivity,
+                       const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere = {}) const;
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
   [[nodiscard]] double margin(const solve::Cycle& orbit, system::Plant& system) const;
@@ -239,7 +238,7 @@ private:
   io::Table multiplier_bars_;
   std::optional<solve::Cycle> last_;
   std::optional<Watched> nearest_;
-  bool leaves_ = false;  // the bifurcation that the branch is born at
+  bool leaves_ = false;             // the bifurcation that the branch is born at
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
   int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;

@@ -63,9 +63,10 @@ struct EquilibriumEvent {
 
 /// Puts the uncertainty of the place, the whirl frequency of a Hopf point and its uncertainty, and the criticality with
 /// its coefficient and uncertainty into `b`. On each other film mesh the same bifurcation is located by Newton's method
-/// from the resampled equilibrium, and on the shaft of shorter elements from the equilibrium there. Criticality is that of the first Lyapunov coefficient, or where its bar contains
-/// zero and forces are smooth by pieces only, that of cycles at three amplitudes; of a fold the side on which the
-/// equilibria exist by its second derivative; "undetermined" where the bar of that contains zero, too. Collective.
+/// from the resampled equilibrium, and on the shaft of shorter elements from the equilibrium there. Criticality is that
+/// of the first Lyapunov coefficient, or where its bar contains zero and forces are smooth by pieces only, that of
+/// cycles at three amplitudes; of a fold the side on which the equilibria exist by its second derivative;
+/// "undetermined" where the bar of that contains zero, too. Collective.
 void describe(io::Bifurcation& b, const EquilibriumEvent& at);
 
 /// Place, whirl frequency and coefficient of the same bifurcation with these cells over those of the deck; empty if it

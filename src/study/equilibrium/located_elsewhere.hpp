@@ -9,7 +9,8 @@
 
 namespace whirl::study {
 
-/// A plant with other cells or elements, at the parameter of the bifurcation there, its equilibrium x (SI) and what was found.
+/// A plant with other cells or elements, at the parameter of the bifurcation there, its equilibrium x (SI) and what was
+/// found.
 struct Elsewhere {
   std::unique_ptr<system::Plant> system;
   core::Vector x;
