@@ -34,7 +34,7 @@ std::map<std::string, Map> run_all(const std::string& name, const std::vector<st
     std::filesystem::create_directories(directory);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_EQ(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty(), delivered);
+  EXPECT_EQ(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, {}, false}).empty(), delivered);
   MPI_Barrier(MPI_COMM_WORLD);
   std::map<std::string, Map> maps;
   const io::Group root = io::read_hdf5(directory / "results.h5");

@@ -20,7 +20,7 @@ inline std::vector<io::StudySummary> run_deck(study::Deck& deck, const std::stri
     std::filesystem::create_directories(directory);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_TRUE(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty());
+  EXPECT_TRUE(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, {}, false}).empty());
   MPI_Barrier(MPI_COMM_WORLD);
   auto studies = io::Summary::read(directory / "summary.json").studies;
   MPI_Barrier(MPI_COMM_WORLD);

@@ -186,7 +186,7 @@ TEST(MinimumFilm, EndsCyclesMotionsAndRunUps) {
   const std::filesystem::path directory = std::filesystem::temp_directory_path() / "whirl_verdict_thin";
   if (core::rank_of(MPI_COMM_WORLD) == 0) std::filesystem::create_directories(directory);
   MPI_Barrier(MPI_COMM_WORLD);
-  const auto undelivered = study::run(MPI_COMM_WORLD, thin, {directory.string(), "test", {}, false});
+  const auto undelivered = study::run(MPI_COMM_WORLD, thin, {directory.string(), "test", {}, {}, false});
   ASSERT_EQ(undelivered.size(), 1U);
   EXPECT_NE(undelivered[0].find(reason), std::string::npos) << undelivered[0];
   MPI_Barrier(MPI_COMM_WORLD);

@@ -210,8 +210,8 @@ TEST(Disc, ItsWeightActsAtItsCentre) {
   const Eigen::VectorXd rows = test::dense(f.get()) - test::dense(g.get());
   const int y = rotor::full_coordinate(node, rotor::Freedom::y),
             tilt = rotor::full_coordinate(node, rotor::Freedom::slope_y);
-  EXPECT_NEAR(rows(2 * y), 3 * with.gravity, 1e-12);
-  EXPECT_NEAR(rows(2 * tilt), 3 * with.gravity * 0.03, 1e-12);
+  EXPECT_NEAR(rows(2 * y), 3 * -system::lateral(with.gravity)[1], 1e-12);
+  EXPECT_NEAR(rows(2 * tilt), 3 * -system::lateral(with.gravity)[1] * 0.03, 1e-12);
   EXPECT_EQ(rows(2 * y - 2), 0);
 }
 
