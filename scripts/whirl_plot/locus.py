@@ -132,7 +132,8 @@ def regions(axis, studies):
     """Shades where each motion is unstable, row by row between its borders, and names what is born there."""
     groups = {}
     for study in studies:
-        groups.setdefault(study.attribute("of", ""), []).append(study)
+        if study.attribute("stable_side", ""):
+            groups.setdefault(study.attribute("of", ""), []).append(study)
     (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
     x, y = np.linspace(left, right, 400), np.linspace(low, high, 300)
     free = np.ones((len(y), len(x)), bool)  # every motion is known to be stable there
@@ -163,7 +164,10 @@ def regions(axis, studies):
         names.append((free, "stable", INK))
     for k, (mask, words, colour) in enumerate(names):
         others = np.zeros_like(mask) if words == "stable" else np.any([m for j, (m, _, _) in enumerate(names) if j != k], axis=0)
-        row, column = widest(mask & ~others if (mask & ~others).any() else mask)
+        row, column = widest(mask & ~others)
+        # Where its own part is narrower than the name, the name stands in the whole region.
+        if np.count_nonzero((mask & ~others)[row]) < 4.8 * len(words):
+            row, column = widest(mask)
         axis.text(x[column], y[row], words, color=colour, fontsize=9, ha="center", va="center", style="italic", zorder=1)
 
 
