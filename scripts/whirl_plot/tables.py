@@ -320,6 +320,18 @@ def findings(study):
     return [t for t in FINDINGS.get(study.kind, lambda s: [bifurcations(s)])(study) if t is not None and t.rows]
 
 
+def applied_unbalance(results):
+    """(name, plane from 1) -> U in kg m, and name -> mass in kg to which its grade applies, as the studies applied them."""
+    amounts, masses = {}, {}
+    for study in results.studies:
+        if not study.has("unbalance/amount"):
+            continue
+        names, planes, some = (np.atleast_1d(study.get(f"unbalance/{k}")) for k in ("unbalance", "plane", "amount"))
+        amounts.update({(str(n), int(p)): float(u) for n, p, u in zip(names, planes, some)})
+        masses.update({n: study.values[f"unbalance.{n}.mass"].value for n in map(str, names) if f"unbalance.{n}.mass" in study.values})
+    return amounts, masses
+
+
 def inputs(results):
     """Tables of what was computed: bearings, lubricants, unbalance, from the deck as it was understood."""
     deck = results.deck
@@ -356,12 +368,15 @@ def inputs(results):
     if rows:
         out.append(Table("Static loads", ["node", "force x / y", "moment about x / y"], rows))
     rows = []
+    amounts, masses = applied_unbalance(results)
     for name, u in (deck.get("unbalance") or {}).items():
-        planes = ", ".join(f"node {p.get('node')}: " + " ".join(f"{k} {quantity(p[k])}" for k in ("eccentricity", "amount", "fraction", "phase") if k in p)
-                           for p in u.get("planes", []))
-        rows.append([name, u.get("grade", ""), u.get("rotor", ""), quantity(u.get("service_speed", "")), planes])
+        planes = ", ".join(f"node {p.get('node')}: " + " ".join([f"{k} {quantity(p[k])}" for k in ("eccentricity", "amount", "fraction", "phase") if k in p]
+                                                                + [f"(U = {person(amounts[name, k], 'kg m', 4)})"] * ((name, k) in amounts))
+                           for k, p in enumerate(u.get("planes", []), 1))
+        rows.append([name, u.get("grade", ""), u.get("rotor", ""), person(masses[name], "kg", 4) if name in masses else "",
+                     quantity(u.get("service_speed", "")), planes])
     if rows:
-        keep = [k for k in range(5) if any(r[k] for r in rows)]
-        head = ["unbalance", "grade", "rotor", "service speed", "planes"]
+        keep = [k for k in range(6) if any(r[k] for r in rows)]
+        head = ["unbalance", "grade", "rotor", "mass", "service speed", "planes"]
         out.append(Table("Unbalance", [head[k] for k in keep], [[r[k] for k in keep] for r in rows]))
     return out
