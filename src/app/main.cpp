@@ -116,7 +116,7 @@ core::Exit dispatch(CommandLine line, bool prints) {
   run_command->add_flag("--progress", run.progress, "tell how far the work is");
   run_command
       ->add_option("--stop-after-checkpoint", run.stop_after_checkpoint,
-                   "end as if killed once N checkpoints have been written, to try --resume")
+                   "end as if killed once N checkpoints have been written, to try how it resumes")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   CLI::App* check_command = cli.add_subcommand("check", "check decks without computing");

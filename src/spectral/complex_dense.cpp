@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <complex>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 extern "C" {
@@ -99,8 +100,21 @@ Eigenpairs complex_eigenpairs(MatrixXcd a) {
                        zgeev_("N", "V", &n, a.data(), &n, out.values.data(), nullptr, &one, out.vectors.data(), &n,
                               work, size, real.data(), info);
                      });
-  if (!found) out.values.setConstant(nothing), out.vectors.setConstant(nothing);
-  return out;
+  if (!found) {
+    out.values.setConstant(nothing);
+    out.vectors.setConstant(nothing);
+    return out;
+  }
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), Index(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index i, Index j) { return out.values(i).real() < out.values(j).real(); });
+  Eigenpairs sorted = out;
+  for (Index k = 0; k < n; ++k) {
+    sorted.values(k) = out.values(order[static_cast<std::size_t>(k)]);
+    sorted.vectors.col(k) = out.vectors.col(order[static_cast<std::size_t>(k)]);
+  }
+  return sorted;
 }
 
 }  // namespace whirl::spectral

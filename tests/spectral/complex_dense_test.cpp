@@ -66,6 +66,7 @@ TEST(ComplexDense, EigenpairsOfAComplexMatrix) {
   EXPECT_LT(off(a * pairs.vectors, pairs.vectors * pairs.values.asDiagonal()), 1e-12 * a.norm());
   EXPECT_NEAR(std::abs(pairs.values.sum() - a.trace()), 0, 1e-13 * a.norm());
   for (Index k = 0; k < 6; ++k) EXPECT_NEAR(pairs.vectors.col(k).norm(), 1, 1e-13);
+  for (Index k = 1; k < 6; ++k) EXPECT_LE(pairs.values(k - 1).real(), pairs.values(k).real());
 }
 
 TEST(ComplexDense, WhatIsNotFiniteHasNoAnswer) {

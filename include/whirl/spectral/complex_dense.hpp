@@ -21,7 +21,7 @@ struct Svd {
 /// x of length one with the least |A x|; one of those with A x = 0 where A has fewer rows than columns.
 [[nodiscard]] Eigen::VectorXcd least_direction(Eigen::MatrixXcd a);
 
-/// Eigenvalues and right eigenvectors of a complex matrix.
+/// Eigenvalues and right eigenvectors of a complex matrix, by rising real part of the eigenvalue.
 [[nodiscard]] Eigenpairs complex_eigenpairs(Eigen::MatrixXcd a);
 
 }  // namespace whirl::spectral
