@@ -11,7 +11,7 @@ import sys
 import numpy
 
 from compare import datasets, same_results
-from harness import GUYAN, Harness, every_bearing, value
+from harness import GUYAN, RANKS, Harness, every_bearing, value
 
 NEAR = "range={from: 120 rad/s, to: 140 rad/s}"
 CONDENSED = "bearings.*.film.states=condensed"
@@ -76,7 +76,7 @@ def ranks(h):
     branch = "{equilibrium_branch: {name: balanced, parameter: speed, range: {from: 380 rad/s, to: 480 rad/s}}}"
     found = [h.run(deck(h), f"ranks_{n}", [only(branch), "bearings.*.film.cells=[24, 4]", "bearings.*.film.grooves.1.pressure=2 kPa",
                                                     "layout.machine=all_ranks"],
-                   launcher=[*h.launcher, "-n", str(n)])["balanced"] for n in (1, 2, 3)]
+                   launcher=[*h.launcher, "-n", str(n)])["balanced"] for n in RANKS]
     for n, s in enumerate(found[1:], 2):
         h.true(f"{n} ranks: they share one machine", s["layout"] == f"one machine on {n} ranks (by the deck)", s["layout"])
         h.true(f"{n} ranks: as many points", s["points"] == found[0]["points"])
@@ -127,9 +127,9 @@ def train(h):
 
 
 def cycle(h, study, overrides=()):
-    """The cycle on 1, 2 and 3 ranks, and killed and resumed."""
+    """The cycle on 1, 2 and, at night, 3 ranks, and killed and resumed."""
     overrides = [only(study), *overrides]
-    for n in (1, 2, 3):
+    for n in RANKS:
         h.run("mass_conserving.yaml", f"cycle_{n}", overrides, launcher=[*h.launcher, "-n", str(n)])
         for what, difference, within in same_results(h.work / "cycle_1", h.work / f"cycle_{n}") if n > 1 else []:
             h.close(f"{n} ranks: {what}", difference, 0, within)

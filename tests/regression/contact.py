@@ -8,7 +8,7 @@ The place of its end was once what the last step left: 529.80, 529.63 and 529.91
 """
 import sys
 
-from harness import Harness, value
+from harness import RANKS, Harness, value
 
 h = Harness(sys.argv[1], sys.argv[2], sys.argv[3:])
 deck = str(h.source / "inputs/rigid_rotor/figure_5_2.yaml")
@@ -18,7 +18,7 @@ BRANCH = ["studies=[{cycle_branch: {name: a1, unbalance: [a1], parameter: speed,
 NAME, CONTACT, WITHIN = "a1 flip 1", 529.97726, 2e-5
 
 runs = {"1 rank": h.run(deck, "1", BRANCH, launcher=[])[NAME]}
-for n in ("2", "3"):
+for n in map(str, RANKS[1:]):
     runs[f"{n} ranks"] = h.run(deck, n, BRANCH, launcher=[*h.launcher, "-n", n])[NAME]
 h.kill_at_checkpoint(deck, h.work / "killed", BRANCH)
 runs["1 rank, killed and resumed"] = h.run(deck, "killed", BRANCH, flags=["--resume"], launcher=[])[NAME]

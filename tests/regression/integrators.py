@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from compare import same_results
-from harness import Harness, value
+from harness import RANKS, Harness, value
 
 SCHEMES = {"sdirk4": "type: sdirk4", "generalized_alpha": "type: generalized_alpha", "bdf": "type: bdf, order: 3",
            "irk": "type: irk, stages: 2, steps: 64", "newmark": "type: newmark, steps: 256",
@@ -43,7 +43,7 @@ def ranks(h):
     """One, two and three ranks: the same."""
     deck = h.source / "inputs/merot/integrators.yaml"
     studies = ", ".join(study(n, k, 2) for n, k in SCHEMES.items())
-    for n in (1, 2, 3):
+    for n in RANKS:
         h.run(deck, f"on {n}", [f"studies=[{studies}]"], launcher=[*h.launcher, "-n", str(n)])
         if n > 1:
             for what, difference, within in same_results(h.work / "on 1", h.work / f"on {n}"):

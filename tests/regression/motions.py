@@ -13,7 +13,7 @@ import h5py
 import numpy
 
 from compare import same_results
-from harness import Harness, value
+from harness import RANKS, Harness, value
 
 TWO_PI = 2 * math.pi
 
@@ -216,7 +216,7 @@ def torus(h, whole=False):
 
 def ranks(h):
     path = deck(h, "short", SHORT)
-    for n in (1, 2, 3):
+    for n in RANKS:
         h.run(path, f"short.{n}", launcher=[*h.launcher, "-n", str(n)])
         if n > 1:
             for what, difference, within in same_results(h.work / "short.1", h.work / f"short.{n}"):

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import h5py
 import numpy
 from compare import same_results
-from harness import Harness, value
+from harness import RANKS, Harness, value
 
 SUPPLY, BUSH = "cool gas", "preheated gas"
 
@@ -565,7 +565,7 @@ def everything(group, path=""):
 def ranks(h):
     """The same on 1, 2 and 3 ranks."""
     few = ["studies.*.thd.cells=[24, 12, 4]"]
-    for n in (1, 2, 3):
+    for n in RANKS:
         h.run("../thd/solids.yaml", f"ranks_{n}", few, launcher=[*h.launcher, "-n", str(n)])
         h.run("../thd/growth.yaml", f"growth_{n}", few, launcher=[*h.launcher, "-n", str(n)])
         if n == 1:

@@ -6,7 +6,7 @@ tilt.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 import sys
 
 from compare import same_results
-from harness import GUYAN, Harness, every_bearing, value
+from harness import GUYAN, RANKS, Harness, every_bearing, value
 
 FEW = [*GUYAN, *every_bearing("film.cells", "[30, 8]")]
 BEARINGS = [f"B{k}" for k in range(1, 6)]
@@ -49,7 +49,7 @@ def ranks(h):
     few = [*FEW, "bearings.B2.film={type: reynolds, cavitation: mass_conserving, states: dynamic, tilt: true, cells: [16, 6]}",
            "studies=[{static: {name: rest, speed: 3600 rpm}}, {modes: {name: modes, speeds: [3600 rpm], count: 6, max_frequency: 6000 rpm}}]",
            "layout.machine=all_ranks"]
-    for n in (1, 2, 3):
+    for n in RANKS:
         h.run("tilt.yaml", f"ranks_{n}", few, launcher=[*h.launcher, "-n", str(n)])
         for what, difference, within in same_results(h.work / "ranks_1", h.work / f"ranks_{n}") if n > 1 else []:
             h.close(f"{n} ranks: {what}", difference, 0, within)

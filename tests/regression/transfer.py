@@ -7,7 +7,7 @@ The Hopf points must be the same, on any number of ranks too, and nothing may be
 """
 import sys
 
-from harness import Harness, value
+from harness import RANKS, Harness, value
 
 TRANSFER = ["--", "-modes_by", "transfer"]
 
@@ -78,7 +78,7 @@ def missed(h):
 def ranks(h):
     deck, where, more = CASES["finite"]
     runs = [h.run(h.source / "inputs" / deck, f"ranks_{n}", [branch(where), *more, "layout.machine=all_ranks"], flags=TRANSFER,
-                  launcher=[*h.launcher, "-n", str(n)])["balanced"] for n in (1, 2, 3)]
+                  launcher=[*h.launcher, "-n", str(n)])["balanced"] for n in RANKS]
     for n, s in enumerate(runs[1:], 2):
         h.true(f"{n} ranks share one machine", s["layout"] == f"one machine on {n} ranks (by the deck)", s["layout"])
         compare(h, f"{n} ranks", runs[0], s, 1e-8)
