@@ -34,7 +34,10 @@ def draw_isobars(study):
         return []
     theta, z, p = np.degrees(study.get("fields/theta")), 1e3 * study.get("fields/z"), 1e-6 * study.get("fields/pressure")
     speeds, e = study.get("curves/speed"), study.get("curves/eccentricity")
-    shown = [0] if len(speeds) == 1 else [0, len(speeds) - 1]
+    known = [k for k in range(len(speeds)) if np.isfinite(p[k]).all()]
+    if not known:
+        return []
+    shown = known if len(known) == 1 else [known[0], known[-1]]
     figure, axes = plt.subplots(len(shown), 1, figsize=(9.6, 2.9 * len(shown)), squeeze=False, sharex=True)
     levels = np.linspace(p[shown].min(), p[shown].max(), 22)
     for axis, k in zip(axes[:, 0], shown):
@@ -90,7 +93,7 @@ def draw_knudsen(study):
     figure, axis = plt.subplots(figsize=(7.2, 4.2))
     for (name, label), colour in zip((("slip_begins", "Kn = 0.01: slip begins to show"), ("transition", "Kn = 0.1: slip has to be counted"), ("free_molecules", "Kn = 10: free molecules")), COLOURS):
         axis.loglog(p, 1e6 * study.get(f"knudsen/{name}"), color=colour, label=label)
-    least = 1e6 * study.get("curves/min_thickness").min()
+    least = 1e6 * np.nanmin(study.get("curves/min_thickness"))
     axis.axhline(least, color=GREY, linestyle="--", label=f"least film of this study, {least:.3g} µm")
     axis.set_xlabel("pressure [MPa, absolute]")
     axis.set_ylabel("film thickness [µm]")

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -58,6 +59,37 @@ TEST(Record, NothingButTheFileIsLeft) {
   int files = 0;
   for ([[maybe_unused]] const auto& f : std::filesystem::directory_iterator(folder.path())) ++files;
   EXPECT_EQ(files, 1);
+}
+
+// What is left in a file is copied from there as often as the tree is written, and read on demand.
+TEST(Record, ContentsLeftInAFileAreCopied) {
+  const test::Temporary folder;
+  Group inner = example().group("studies").group("balanced, 2nd");
+  Group whole;
+  whole.child("state").child("studies").child("s") = inner;
+  write_hdf5(folder / "variant.h5", whole);
+  Group root;
+  root.child("studies").child("sweep").child("variants").child("a").set("title", "a");
+  Group& a = root.child("studies").child("sweep").child("variants").child("a");
+  leave_in_file(a, folder / "variant.h5", "state/studies");
+  EXPECT_TRUE(is_left(a));
+  for (int k = 0; k < 2; ++k) {  // the second time from the file that is replaced
+    write_hdf5(folder / "results.h5", root);
+    moved_to(root, folder / "results.h5");
+    if (k == 0) std::filesystem::remove(folder / "variant.h5");
+    const Group back = read_hdf5(folder / "results.h5").group("studies").group("sweep").group("variants").group("a");
+    EXPECT_EQ(back.group("s"), inner);
+    EXPECT_EQ(back.text("title"), "a");
+    EXPECT_EQ(back.attributes().size(), 1U);
+    EXPECT_EQ(with_contents(root.group("studies").group("sweep").group("variants").group("a")), back);
+  }
+  // A run that goes on leaves them there, too.
+  root = read_hdf5(folder / "results.h5", MPI_COMM_SELF, "variants");
+  EXPECT_TRUE(is_left(root.group("studies").group("sweep").group("variants").group("a")));
+  write_hdf5(folder / "again.h5", root);
+  EXPECT_EQ(read_hdf5(folder / "again.h5"), read_hdf5(folder / "results.h5"));
+  std::filesystem::remove(folder / "results.h5");
+  EXPECT_THROW(write_hdf5(folder / "none.h5", root), core::Error);
 }
 
 TEST(Record, AFailedWriteLeavesTheOldFile) {
