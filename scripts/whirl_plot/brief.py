@@ -55,7 +55,8 @@ def unstable_from(study, factor, unit):
         v = study.values["threshold"]
         return [f"unstable from {with_bar(v.value, v.uncertainty)} {v.unit}"]
     speed, every = study.get("spectrum/speed"), np.unique(study.get("spectrum/speed"))
-    unstable = np.unique(speed[study.get("spectrum/log_decrement") < 0])
+    known = study.get("spectrum/stability")
+    unstable = np.unique(speed[study.get("spectrum/log_decrement") < 0 if known is None else np.isin(known, ("unstable", "diverges"))])
     if not len(unstable):
         return []
     first = float(unstable[0] * factor)

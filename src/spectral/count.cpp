@@ -20,7 +20,7 @@ using Sparse = Eigen::SparseMatrix<Complex>;
 
 constexpr double most_entries = 2e6;
 constexpr int first_points = 24, most_points = 400;
-constexpr double largest_turn = std::numbers::pi / 4;
+constexpr double largest_turn = std::numbers::pi / 2;
 
 // The whole of a distributed matrix on this rank.
 Sparse whole(Mat distributed) {
@@ -146,17 +146,23 @@ private:
   Factors lu_;
 };
 
-// Between the moduli of the farther half, where the gap is widest.
+// The unknown ones crowd beyond the farthest known one, near -1/tau of a shaft with damping in proportion to its
+// stiffness: a circle that passes near them turns with each of them. So it keeps away from the farthest by a factor.
+// Between the moduli from there down to a tenth, where the gap is widest.
 double radius_in(const std::vector<Complex>& known) {
+  constexpr double apart = 2.5, least = 10;
   std::vector<double> sizes;
   for (const Complex k : known) sizes.push_back(std::abs(k));
   std::sort(sizes.begin(), sizes.end());
+  const double reach = sizes.back() / apart;
   double best = 0, widest = 1;
-  for (std::size_t k = sizes.size() / 2; k + 1 < sizes.size(); ++k)
-    if (sizes[k] > 0 && sizes[k + 1] / sizes[k] > widest) {
-      widest = sizes[k + 1] / sizes[k];
-      best = std::sqrt(sizes[k] * sizes[k + 1]);
+  for (std::size_t k = 0; k + 1 < sizes.size(); ++k) {
+    const double low = std::max(sizes[k], reach / least), high = std::min(sizes[k + 1], reach);
+    if (high > low * widest) {
+      widest = high / low;
+      best = std::sqrt(low * high);
     }
+  }
   return best;
 }
 

@@ -182,10 +182,15 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   core::set_from_options(eps.get());
   std::vector<Mode> out;
   if (!dense) {
-    if (shell)
-      shell->gate.rethrow(EPSSolve(eps.get()));
-    else
-      check(EPSSolve(eps.get()));
+    // A shift on an eigenvalue makes a singular matrix, and LAPACK may refuse to sort the projected one.
+    try {
+      if (shell)
+        shell->gate.rethrow(EPSSolve(eps.get()));
+      else
+        check(EPSSolve(eps.get()));
+    } catch (const core::LibraryError& error) {
+      throw core::NotConverged(fmt::format("the search for eigenvalues failed: {}", error.what()));
+    }
     std::optional<LeftVectors> left;
     if (options.left && !shell) left.emplace(a.get(), b.get(), options);
     return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options, nullptr,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/petsc.hpp"
 #include "whirl/rotor/critical_speeds.hpp"
 #include "whirl/rotor/frequencies.hpp"
 #include "whirl/rotor/shaft.hpp"

@@ -42,14 +42,14 @@ TEST(CountEigenvalues, TellsWhatASearchHasLeftOut) {
     if (m.lambda.imag() > 0 && m.lambda.imag() < 10.5) found.push_back(m);
   ASSERT_EQ(found.size(), 10U);
   const auto complete = spectral::count_eigenvalues(s, x.get(), found);
-  EXPECT_GT(complete.radius, 5);
-  EXPECT_LT(complete.radius, 10);
+  EXPECT_GT(complete.radius, 0.4);
+  EXPECT_LT(complete.radius, 4);
   EXPECT_EQ(complete.missed, 0);
   EXPECT_TRUE(complete.sure);
-  EXPECT_EQ(complete.counted, 2 * static_cast<int>(complete.radius));
+  EXPECT_EQ(complete.counted, 2 * static_cast<int>(complete.radius + 0.01));
   EXPECT_LT(complete.factorisations, 120);
   EXPECT_NEAR(complete.real, 40, 1);  // beyond the circle
-  found.erase(found.begin() + 3);
+  found.erase(found.begin());
   const auto without = spectral::count_eigenvalues(s, x.get(), found);
   EXPECT_EQ(without.missed, 2);
   EXPECT_TRUE(without.sure);

@@ -20,9 +20,9 @@ struct EigenCount {
 
 /// Counts at the equilibrium x, by the winding number of det(dF/dx + lambda dF/d(dx/dt)) over the product of (lambda -
 /// lambda_k) of the eigenvalues found, along the circle. Those found cancel, so that the phase turns only where one is
-/// missing, and a few dozen factorisations follow it. The radius lies in the widest gap among the moduli of the farther
-/// half of `found`, which are those nearest to zero. The sign of the determinant on the positive real axis beyond tells
-/// of an odd number of real eigenvalues there.
+/// missing, and a few dozen factorisations follow it. The radius lies in the widest gap of the moduli of `found`, which
+/// are those nearest to zero, between 0.04 and 0.4 of the largest. The sign of the determinant on the positive real
+/// axis beyond tells of an odd number of real eigenvalues there.
 ///
 /// For sparse systems, as shafts are: rows as long as a film fill the factors. Nothing is counted where these have more
 /// than 2,000,000 entries, or with fewer than four eigenvalues found. One rank works, all get the result. Collective.

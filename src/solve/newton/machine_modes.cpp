@@ -146,7 +146,7 @@ MachineModes whole_modes(problem::System& system, Vec x, spectral::EigenOptions 
       out.missed = counted.missed;
       if (!counted.sure) out.doubt = "the phase of the determinant could not be followed";
       out.gave_up = !done && count < system.size();
-      if (last || (counted.missed == 0 && counted.sure) || count >= most_for_count * options.count) return out;
+      if (last || counted.missed == 0 || !counted.sure || count >= most_for_count * options.count) return out;
     }
     count = std::min<int>(2 * count, system.size());
   }

@@ -40,6 +40,8 @@ public:
   /// The largest error of a frequency by the mesh of the shaft as "shaft_mesh.largest_error" [1], with a warning above
   /// one per cent that names the element.
   void tell_shaft(io::StudySummary& summary, const rotor::Options& rotor) const;
+  /// Whether films or shaft have a mesh.
+  [[nodiscard]] bool any() const { return any_; }
   // All of these give nothing where neither films nor shaft have a mesh.
   /// The same as numbers of a summary.
   [[nodiscard]] std::map<std::string, double> named(int id, double speed) const;

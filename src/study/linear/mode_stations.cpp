@@ -137,6 +137,10 @@ std::vector<UnstableRange> unstable_ranges(const std::vector<Station>& stations,
       const auto [at, added] = open.try_emplace(m.id);
       UnstableRange& r = at->second;
       r.to = stations[i].speed;
+      if (added || m.lambda.real() > r.fastest.lambda.real()) {
+        r.fastest = m;
+        r.fastest_at = stations[i].speed;
+      }
       if (!added) {
         if (!r.begins && m.lambda.real() > r.lambda.real()) r.lambda = m.lambda;
         continue;
@@ -144,7 +148,6 @@ std::vector<UnstableRange> unstable_ranges(const std::vector<Station>& stations,
       r.id = m.id;
       r.from = stations[i].speed;
       r.lambda = m.lambda;
-      r.shape = m;
       const ShaftMode* before = i > 0 ? mode_with(m.id, stations[i - 1]) : nullptr;
       if (const auto begin = crossing_at(m.id, i)) {
         r.from = points[*begin].speed;

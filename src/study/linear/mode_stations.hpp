@@ -60,7 +60,8 @@ struct UnstableRange {
   bool begins = false, ends = false;  ///< at a crossing; else where the mode is first or last seen
   std::complex<double> lambda = 0;    ///< at the crossing, else where it grows fastest
   std::optional<std::size_t> begin_crossing{}, end_crossing{};  ///< their places; none where it is undamped beside it
-  ShaftMode shape{};                                            ///< where it grows first
+  ShaftMode fastest{};                                          ///< where it grows fastest of all stations
+  double fastest_at = 0;                                        ///< [rad/s]
 };
 /// Of all modes with a number, by rising speed. `points` as many as `crossings`.
 [[nodiscard]] std::vector<UnstableRange> unstable_ranges(const std::vector<Station>& stations,

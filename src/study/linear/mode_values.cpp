@@ -25,9 +25,16 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-const char* stability_of(const ShaftMode& mode) {
+bool surely_grows(const ShaftMode& mode, double speed, const ModeBars& bars) {
+  if (!mode.grows()) return false;
+  const double bar = bars.at(mode.id, speed)[0];
+  return std::isfinite(bar) ? mode.lambda.real() > bar : !(mode.extra && bars.any());
+}
+
+const char* stability_of(const ShaftMode& mode, double speed, const ModeBars& bars) {
   if (mode.undamped) return name_of(StabilityClass::undamped);
   if (!mode.grows()) return name_of(StabilityClass::stable);
+  if (!surely_grows(mode, speed, bars)) return "undetermined";
   return spectral::vibrates(mode.lambda) ? name_of(StabilityClass::unstable) : "diverges";
 }
 
@@ -53,8 +60,10 @@ void ModeValues::put_speed(io::StudySummary& summary, const Station& station) co
     const ShaftMode& m = station.modes[k];
     const bool moves = spectral::vibrates(m.lambda);
     if (!forward && moves && tables_.sense_of(m) == spectral::Sense::forward) forward = &m;
-    if (!least || spectral::damping_ratio(m.lambda) < spectral::damping_ratio(least->lambda)) least = &m;
-    if (!m.grows()) continue;
+    const bool grows = surely_grows(m, station.speed, bars_);
+    if ((grows || !m.grows()) && (!least || spectral::damping_ratio(m.lambda) < spectral::damping_ratio(least->lambda)))
+      least = &m;
+    if (!grows) continue;
     growing.push_back(words_of(m, m.lambda));
     if (moves) growing.back() += fmt::format(" grows (log decrement {:.3g})", spectral::log_decrement(m.lambda));
   }
@@ -66,7 +75,7 @@ void ModeValues::put_speed(io::StudySummary& summary, const Station& station) co
         fmt::format("at {} {} the machine is unstable: {}", number_text(station.speed, unit_), unit_, joined(growing)));
 }
 
-void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<UnstableRange>& ranges,
+void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<UnstableRange>& all,
                             const std::vector<double>& errors) const {
   std::vector<double> from, to, frequency, real;
   std::vector<std::int64_t> mode, begins, ends;
@@ -74,8 +83,11 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
   const auto error_of = [&](const std::optional<std::size_t>& crossing) {
     return crossing ? bars_.as_bar(deck::from_si(errors[*crossing], unit_)) : std::map<std::string, double>{};
   };
+  std::vector<UnstableRange> ranges;
   std::size_t shown = 0;
-  for (const UnstableRange& r : ranges) {
+  for (const UnstableRange& r : all) {
+    if (!surely_grows(r.fastest, r.fastest_at, bars_)) continue;
+    ranges.push_back(r);
     from.push_back(r.from);
     to.push_back(r.to);
     frequency.push_back(r.lambda.imag());
@@ -83,10 +95,10 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
     mode.push_back(r.id);
     begins.push_back(r.begins);
     ends.push_back(r.ends);
-    whirl.emplace_back(spectral::vibrates(r.lambda) ? spectral::name_of(tables_.sense_of(r.shape)) : "none");
+    whirl.emplace_back(spectral::vibrates(r.lambda) ? spectral::name_of(tables_.sense_of(r.fastest)) : "none");
     words.push_back(fmt::format("{}{} to {}{} {}: {}", r.begins ? "" : "from the start, ", number_text(r.from, unit_),
                                 number_text(r.to, unit_), r.ends ? "" : " (the end)", unit_,
-                                words_of(r.shape, r.lambda)));
+                                words_of(r.fastest, r.lambda)));
     if (++shown > most_named) continue;
     const std::string head = fmt::format("unstable.{}.", shown);
     summary.set(head + "from", deck::from_si(r.from, unit_), unit_, error_of(r.begin_crossing));

@@ -12,8 +12,12 @@
 
 namespace whirl::study {
 
-/// "stable", "undamped", "unstable", or "diverges" of a real eigenvalue above zero.
-[[nodiscard]] const char* stability_of(const ShaftMode& mode);
+/// Whether a mode that grows does so for sure: its real part exceeds its bar. A mode that is listed for its growth
+/// alone and has no counterpart on the other meshes is one of the mesh: a shaft without damping of its own has the
+/// fastest vibrations of its elements on either side of the border by next to nothing.
+[[nodiscard]] bool surely_grows(const ShaftMode& mode, double speed, const ModeBars& bars);
+/// "stable", "undamped", "unstable", "undetermined", or "diverges" of a real eigenvalue above zero.
+[[nodiscard]] const char* stability_of(const ShaftMode& mode, double speed, const ModeBars& bars);
 
 class ModeValues {
 public:
@@ -23,11 +27,11 @@ public:
 
   /// Of a single speed, as "at.SPEED.": frequency [rad/s], log_decrement and damping_ratio of the first forward mode
   /// (`first_forward.`, that of lowest frequency) and of the least damped one (`least_damped.`), and how many modes
-  /// grow (`unstable`). A warning names those that grow.
+  /// grow for sure (`unstable`). A warning names these.
   void put_speed(io::StudySummary& summary, const Station& station) const;
   /// Of a range: "unstable.K." with from, to, mode and frequency, and a table; `errors` of the speeds of the crossings
   /// [rad/s]. "threshold": the lowest speed at which the machine, stable below, becomes unstable. A warning names the
-  /// ranges.
+  /// ranges. Modes that nowhere grow for sure are left out.
   void put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<UnstableRange>& ranges,
                   const std::vector<double>& errors) const;
   /// Motions that fall away before they vibrate: a table, and how many there are at the last speed.

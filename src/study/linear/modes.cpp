@@ -157,7 +157,7 @@ StudyResult Modes::run(Context& context) {
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
     ModeSearch of_other_mesh;
-    return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh, false, on.size() > system.size()));
+    return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh));
   });
   bars.tell_shaft(summary, context.machine.rotor);
   ModeReduction reduction(system, walker, sampled);
@@ -177,7 +177,7 @@ StudyResult Modes::run(Context& context) {
       decrement.push_back(m.undamped ? 0 : spectral::log_decrement(m.lambda));
       ratio.push_back(spectral::damping_ratio(m.lambda));
       factor.push_back(spectral::stability_factor(m.lambda));
-      const char* const stability = stability_of(m);
+      const char* const stability = stability_of(m, speed, bars);
       stability_column.emplace_back(stability);
       summary.modes.push_back({deck::from_si(speed, unit),
                                m.lambda.real(),
@@ -239,9 +239,10 @@ StudyResult Modes::run(Context& context) {
   bars.put(spectrum, id_column, speed_column);
   spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
   tables.put_spectrum(spectrum);
-  spectrum.put("stability", stability_column,
-               "stable, unstable, diverges (it grows without oscillation), or undamped: the real part is rounding, "
-               "shown as zero");
+  spectrum.put(
+      "stability", stability_column,
+      "stable, unstable, diverges (it grows without oscillation), undetermined (the bar of the real part contains "
+      "zero), or undamped: the real part is rounding, shown as zero");
   tables.put_map(group.child("whirl_map"));
   tables.warn(summary, searches);
   group.set("speed_unit", unit);

@@ -33,11 +33,10 @@ double participation(const std::vector<Complex>& shape, const std::vector<double
 }  // namespace
 
 std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, int beyond,
-                                   double max_frequency, ModeSearch& search, bool condition, bool quick) {
+                                   double max_frequency, ModeSearch& search, bool condition) {
   const int sought = count + beyond;
   spectral::EigenOptions options;
   options.left = condition;
-  if (quick) options.dense_below = 4 * sought;
   options.count = 2 * sought + 40;
   options.rounding = true;
   std::vector<double> scale;
@@ -114,6 +113,7 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     m.multiplicity = mode.multiplicity;
     m.vectors = mode.vectors;
     m.undamped = mode.neutral();
+    m.extra = growing && moves && !low;
     m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
     Complex largest = 0;
     for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
@@ -148,7 +148,7 @@ std::vector<double> pack(std::vector<ShaftMode> modes, const ModeSearch& search)
     put(m.lambda);
     put({m.undamped ? 1.0 : 0.0, m.participation});
     put({static_cast<double>(m.multiplicity), static_cast<double>(m.vectors)});
-    put(m.condition);
+    put({m.condition, m.extra ? 1.0 : 0.0});
     for (const auto* column : m.columns())
       for (const Complex& v : *column) put(v);
   }
@@ -175,7 +175,9 @@ std::vector<ShaftMode> unpack(const std::vector<double>& flat, ModeSearch& searc
     const Complex multiple = take();
     m.multiplicity = static_cast<int>(multiple.real());
     m.vectors = static_cast<int>(multiple.imag());
-    m.condition = take().real();
+    const Complex last = take();
+    m.condition = last.real();
+    m.extra = last.imag() > 0;
     for (auto* column : m.columns())
       for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
   }

@@ -17,7 +17,8 @@ struct ShaftMode {
   double participation = 1;  // of the machine: its largest motion over that of any state
   double condition = 0;      // of the eigenvalue, as of spectral::Mode; not a number: not known or not asked for
   int multiplicity = 1, vectors = 1;
-  int id = -1;  // the same for the same mode at other speeds
+  bool extra = false;  // it is listed for nothing but its growth, above those asked for
+  int id = -1;         // the same for the same mode at other speeds
 
   [[nodiscard]] bool grows() const { return !undamped && lambda.real() > 0; }
   [[nodiscard]] std::vector<std::complex<double>> both() const {
@@ -51,11 +52,9 @@ struct ModeSearch {
 ///
 /// A motion of the films alone is none of these unless it grows: states are measured in their scales, and where shaft
 /// and pedestals do less than `least_participation` of what the films do, eigenvalues of films that carry their content
-/// along are left to rounding. `condition`: with condition numbers. `quick`: by iteration also where dense matrices
-/// would do, for machines that serve an error bar. Collective.
+/// along are left to rounding. `condition`: with condition numbers. Collective.
 [[nodiscard]] std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, int beyond,
-                                                 double max_frequency, ModeSearch& search, bool condition = false,
-                                                 bool quick = false);
+                                                 double max_frequency, ModeSearch& search, bool condition = false);
 inline constexpr double least_participation = 1e-3;
 
 /// Modes of one speed as numbers, to send them between ranks, and back.
