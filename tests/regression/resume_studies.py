@@ -2,7 +2,8 @@
 """Studies that are killed and resumed find what undisturbed ones find, and work that a
 checkpoint holds is not done again.
 
-resume_studies.py PROGRAM SOURCE CASE KILLS SEED
+resume_studies.py PROGRAM SOURCE CASE KILLS SEED     kills at random amounts of work
+resume_studies.py PROGRAM SOURCE CASE 0 CHECKPOINT   one stop, at that checkpoint
 """
 import ctypes
 import os
@@ -77,7 +78,7 @@ def between(out):
 
 def run(out, flags=(), limit=None):
     """Work of a run (instructions, or processor time where they are not counted), its processor time, and whether it was
-    killed, which happens when its work has come to `limit`."""
+    killed, by itself or when its work has come to `limit`."""
     counted = lambda: int.from_bytes(os.read(COUNTER, 8), "little")
     begin = counted() if COUNTER else 0
     process = subprocess.Popen(h.command(deck, out, overrides, flags), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -89,6 +90,7 @@ def run(out, flags=(), limit=None):
         time.sleep(5e-3)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = status
+    killed = killed or status == signal.SIGKILL
     if status != 0 and not killed:
         sys.exit(f"{case}: exit status {status}")
     seconds = usage.ru_utime + usage.ru_stime
@@ -102,14 +104,14 @@ lost, allowed = [], []
 work = 0.5 if case in ("compliant", "figure", "cycles", "convergence") else 1.5
 # The same work takes more or less processor time, by what else runs on the cores; instructions do not.
 noise = 0 if COUNTER else 0.2
-moments = sorted(start + (whole - start) * random.uniform(0.15, 0.95) for _ in range(kills))
+moments = sorted(start + (whole - start) * random.uniform(0.15, 0.95) for _ in range(kills)) or [None]
 for k, moment in enumerate(moments):
     # Each kill is that of a run of its own, so that what each of them costs can be told.
     out = h.work / f"killed {k}"
-    before, _, killed = run(out, limit=moment)
+    before, _, killed = run(out, ["--stop-after-checkpoint", str(seed)] if moment is None else [], limit=moment)
     waited = between(out)
     after, _, _ = run(out, ["--resume"])
-    share = moment / whole
+    share = (before if moment is None else moment) / whole
     if killed:
         lost.append((before + after - whole - start) / whole * seconds)
         # The file written last may have taken longer than those that its interval was chosen from.
