@@ -40,8 +40,9 @@ TEST(Kept, AResponseWhoseBarsFail) {
     to.set(head + "height", height, "m");
   };
   put(summary, "peak.", 280, 8e-5, 10);
-  put_response_bars(summary, {{Axis::around, {0.5, 1}, 2}, {Axis::around, {2, 1}, 0.5}}, {},
-                    {{"peak.", 0, 280, 8e-5, 10}}, put, [](const auto&, const auto&, const auto&) -> MeshResponse {
+  std::vector<NamedPeak> peaks{{"peak.", 0, 280, 8e-5, 10}};
+  put_response_bars(summary, {{Axis::around, {0.5, 1}, 2}, {Axis::around, {2, 1}, 0.5}}, {}, peaks, put,
+                    [](const auto&, const auto&, const auto&) -> MeshResponse {
                       throw core::NotConverged("the matrix at this frequency is singular");
                     });
   ASSERT_EQ(summary.values.size(), 2U);
