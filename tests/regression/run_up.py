@@ -89,6 +89,8 @@ def exact(h):
             peak = amplitude.max()
             h.close(f"{name}: amplitude in every revolution, worst of {n}, per peak",
                     np.abs(table["amplitude"][:, 0] - amplitude).max() / peak, 0, 1e-6)
+            # Without weight the mean position is the axis: the mean of one revolution was 3 % (slow) and 14 % (fast) off.
+            h.close(f"{name}: the peak is the largest distance from the axis", peak, np.abs(z).max(), 1e-3 * peak)
             h.close(f"{name}: largest x in every revolution", np.abs(table["x_max"][:, 0] - z.real.max(axis=1)).max() / peak,
                     0, 1e-6)
             h.close(f"{name}: smallest y in every revolution", np.abs(table["y_min"][:, 0] - z.imag.min(axis=1)).max() / peak,
@@ -104,7 +106,7 @@ def exact(h):
     h.true("later, the faster: above the critical speed on the way up", 100 < place["slow"] < place["fast"], str(place))
     h.true("and below it on the way down", place["down"] < 100)
     # Where the speed changes slowly the amplitude hardly lags behind the steady one.
-    h.close("slow run-up: peak per steady one", height["slow"] / steady, 1, 0.03)
+    h.close("slow run-up: peak per steady one", height["slow"] / steady, 1, 0.05)
 
 
 def travel(table, column, revolutions):
@@ -116,7 +118,8 @@ def rigid(h):
     """The rigid rotor's deck: at its ends the motion is the cycle of that speed, simple at 320 rad/s, of twice the period at
     640 rad/s; in between it is found where integrations with tolerances of 1e-6 and 1e-8 put it, within three revolutions. Slowly
     it leaves the unstable cycle by what disturbs it: with steps alike in all revolutions, which disturb nothing, at 495.4 rad/s;
-    with others earlier, the less so the smaller their errors are."""
+    with others earlier, the less so the smaller their errors are. The passages are of distances from the mean of a whole period: the way
+    down, with 1e-6 and with 1e-8, at 384.67 rad/s."""
     path = h.source / "inputs/rigid_rotor/run_up.yaml"
     h.run(path, "deck")
     cycles = h.work / "cycles.yaml"
@@ -130,7 +133,7 @@ def rigid(h):
     doubled = value(run["a flip 1"], "at.640.peak_to_peak.left.x")
     h.true("the doubled cycle is ten times as large", doubled > 10 * simple, f"{doubled}, {simple}")
     with h5py.File(h.work / "deck/results.h5") as f:
-        for name, passage, within in (("slow", 495.4, 2), ("fast", 540.5, 15), ("down", 382.0, 2)):
+        for name, passage, within in (("slow", 495.4, 2), ("fast", 540.5, 15), ("down", 384.7, 2)):
             t = f[f"studies/{name}/run_up"]
             table = {k: t[k][()] for k in ("speed", "amplitude", "x_max", "x_min")}
             up = name != "down"
@@ -170,13 +173,15 @@ def train(h):
     steady = h.run(path, "steady", ["studies.2.run_up.range={from: 3100 rpm, to: 3200 rpm}", "studies.2.run_up.duration=0.1 s",
                                     "studies.3.run_up.range={from: 3100 rpm, to: 3200 rpm}", "studies.3.run_up.duration=0.1 s"])["steady"]
     height, place = (value(run["fast"], f"node.120.peak.{k}") for k in ("amplitude", "speed"))
-    h.close("peak of node 120 [m]", height, 81.251e-6, 5e-8)
-    h.close("its speed [rpm]", place, 2762.2, 12)
+    h.close("peak of node 120 [m]", height, 80.215e-6, 5e-8)
+    h.close("its speed [rpm]", place, 2773.1, 12)
     h.true("lower than at constant speed", height < 0.97 * value(steady, "peak.1.semi_major"), value(steady, "peak.1.semi_major"))
     h.true("later by five revolutions or more", place > value(steady, "peak.1.speed") + 55, value(steady, "peak.1.speed"))
     with h5py.File(h.work / "fast/results.h5") as f:
         t = f["studies/fast/run_up"]
         table = {k: t[k][()] for k in ("speed", "x_max", "x_min")}
+        travels = np.maximum(t["node_x"][:, 0], t["node_y"][:, 0]).max()
+        h.true("the peak is half the travel on an ellipse that leans a little", travels < height < 1.02 * travels, f"{travels}, {height}")
     h.close("speed of the last revolution [rpm]", table["speed"][-1], 3195.3, 0.1)
     for k in range(5):
         wanted = value(run["cycles"], f"at.3195.3.peak_to_peak.B{k + 1}.x")

@@ -26,7 +26,7 @@ void Neighbours::add(Revolution next) {
 }
 
 long Neighbours::ready() const {
-  return std::max(0L, added() - static_cast<long>(width / 2));
+  return added() < static_cast<long>(width) ? 0 : added() - static_cast<long>(width / 2);
 }
 
 const Revolution& Neighbours::at(long revolution) const {
