@@ -66,7 +66,8 @@ bool is_of_another_kind(const Node& value, const Option& o) {
   }
 }
 
-// The key that was meant, or another word for it, where the value does not say that it is another quantity.
+// The key that was meant, where the value does not say that it is another quantity; the word for another quantity, a
+// diameter for a radius, by itself.
 std::string hint_for(const Structure& s, const Node& entry) {
   std::vector<std::string> words;
   for (const Option& o : s.options) {
@@ -74,7 +75,10 @@ std::string hint_for(const Structure& s, const Node& entry) {
     words.push_back(o.key);
     for (const Alias& a : o.aliases) words.push_back(a.key);
   }
-  return did_you_mean(entry.key, words);
+  std::string near = nearest(entry.key, words);
+  double factor = 1;
+  if (const Option* o = s.aliased(near, factor); o && factor == 1) near = o->key;
+  return near.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", near);
 }
 
 // The entry of `node` for `o`, under its key or another word for it, which goes to `meant`; null if there is none.

@@ -97,11 +97,11 @@ def films(h):
                               (["bearings.*.film.cavitation=half_sommerfeld"], 9470.0, 3.9)):
         b = h.run(CASES / "past_threshold.yaml", f"threshold {len(h.rows)}", [branch, *words])["t"]["bifurcations"][0]
         h.close(f"threshold, {words or 'default'} [rpm]", b["value"], speed, 0.05)
-        h.close("its bar", b["uncertainty"], bar, 0.1)
-    coarse = ["bearings.*.film.cells=[30, 8]"]
+        h.true("a bar of that size", bar <= b["uncertainty"] < 2 * bar, b["uncertainty"])
     for cavitation, speed, bar in (("half_sommerfeld", 2813, 29), ("reynolds", 5003, 44)):
-        b = h.run(CASES / "generator_threshold.yaml", cavitation, [*coarse, f"bearings.*.film.cavitation={cavitation}"])["threshold"]["bifurcations"][0]
-        h.close(f"generator, {cavitation}, coarse [rpm]", b["value"], speed, bar + b["uncertainty"])
+        b = h.run(CASES / "generator_threshold.yaml", cavitation, [f"bearings.*.film.cavitation={cavitation}"])["threshold"]["bifurcations"][0]
+        h.close(f"generator, {cavitation} [rpm]", b["value"], speed, 0.6)
+        h.close("its bar", b["uncertainty"], bar, 1)
 
 
 def labels(h):
@@ -129,7 +129,7 @@ def labels(h):
 
 def whirl_amplitude(h):
     """A journal that whirls at half the speed goes half around in a revolution: its amplitude is counted from the mean of its orbit."""
-    run = ("studies=[{run_up: {name: up, unbalance: [wheels], range: {from: 60000 rpm, to: 66000 rpm}, duration: 0.1 s, nodes: [12], "
+    run = ("studies=[{run_up: {name: up, unbalance: [wheels], range: {from: 60000 rpm, to: 61000 rpm}, duration: 50 ms, nodes: [12], "
            "samples: 32, tolerance: 1e-5}}]")
     s = h.run(CASES / "turbocharger.yaml", "turbocharger", [run])["up"]
     with h5py.File(h.work / "turbocharger/results.h5") as f:
