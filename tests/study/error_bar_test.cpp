@@ -113,7 +113,7 @@ TEST(ErrorBar, IsUnknownWhereNoOtherMeshHasTheNumber) {
 
 TEST(ErrorBar, KeepsTimeApart) {
   const Bar bar =
-      error_bar(1, {{Axis::time, 0.5, 1.07}, {Axis::time, 2, 0.44}, {Axis::around, 0.5, 1.0}}, {2, 3, false});
+      error_bar(1, {{Axis::time, 0.5, 1.07}, {Axis::time, 2, 0.44}, {Axis::around, 0.5, 1.0}}, {.time_order = 3});
   EXPECT_NEAR(bar.time_mesh, 0.08 * 1.25, 1e-12);  // 1.08 - 0.08 r^3
   EXPECT_EQ(bar.film_mesh, 0);
 }
@@ -157,7 +157,7 @@ TEST(ErrorBar, StudentsQuantilesAreThoseOfTheTables) {
 // Weights that jump with the edge: first order, and nothing but oscillation; or, against the rule, as large on every
 // mesh.
 TEST(ErrorBar, CoversKinksWhenToldOfThem) {
-  const MeshLaw kinks{2, 2, true};
+  const MeshLaw kinks{.kinks = true};
   const std::vector<double> four{0.5, 2.0 / 3, 4.0 / 3, 2}, coarser{2, 1.6, 4.0 / 3, 8.0 / 7};
   // How fast it oscillates is chance, too.
   const auto falling = [](double phase) -> Law {
@@ -197,7 +197,7 @@ TEST(ErrorBar, CoversKinksWhenToldOfThem) {
 }
 
 TEST(ErrorBar, OfKinksIsNoLongerThanTheScatter) {
-  const MeshLaw kinks{2, 2, true};
+  const MeshLaw kinks{.kinks = true};
   // A regular law has no scatter, and is covered of whichever order it is.
   for (const double order : {1.0, 2.0}) {
     const Law law = [order](double h, double k) { return 3 + 0.2 * std::pow(h, order) - 0.05 * std::pow(k, order); };
@@ -269,13 +269,13 @@ TEST(ErrorBar, OfTheTrainsThresholdCovers) {
   };
   add(Axis::around, {7042, 7164, 7099, 7093});
   add(Axis::along, {7091, 7126, 7046, 7079});
-  const Bar bar = error_bar(7044, samples, {2, 2, true});
+  const Bar bar = error_bar(7044, samples, {.kinks = true});
   EXPECT_GE(bar.total(), 7093 - 7044 + 16);
   EXPECT_LE(bar.total(), 3 * 40) << "of the scatter, 40 rpm";
 }
 
 TEST(ErrorBar, OfKinksIsUnknownWhereNothingShowsTheScatter) {
-  const MeshLaw kinks{2, 2, true};
+  const MeshLaw kinks{.kinks = true};
   EXPECT_TRUE(std::isnan(error_bar(1, {{Axis::around, 2, 1.1}}, kinks).total()));
   EXPECT_EQ(error_bar(1, {{Axis::around, 2, 1.0}}, kinks).total(), 0) << "it does not depend on the mesh";
   EXPECT_TRUE(std::isnan(error_bar(1, {{Axis::around, 2, NAN}, {Axis::around, 0.5, NAN}}, kinks).total()));
@@ -289,7 +289,7 @@ double share_in_time(int k, double order) {
       return std::pow(h, k + 2) * std::sin(37 / h + 2 * std::numbers::pi * n * std::numbers::phi);
     };
     const std::vector<Sample> samples{{Axis::time, 0.5, law(0.5)}, {Axis::time, 2, law(2)}};
-    covered += error_bar(law(1), samples, {2, order, false}).total() >= std::abs(law(1));
+    covered += error_bar(law(1), samples, {.time_order = order}).total() >= std::abs(law(1));
   }
   return covered / 2000.0;
 }
