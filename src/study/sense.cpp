@@ -1,6 +1,7 @@
 #include "study/sense.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,30 +113,43 @@ void warn_of_films(io::StudySummary& summary, const system::Train& train) {
     const auto bar = q.more.find("uncertainty");
     return q.value - (bar != q.more.end() && std::isfinite(bar->second) ? bar->second : 0) > limit;
   };
+  // One sentence on all bearings of which it is true, by its end.
+  std::vector<std::pair<std::string, std::vector<std::string>>> sentences;
   for (const system::Support& s : train.supports) {
     if (!(s.geometry.clearance > 0)) continue;
-    const std::string head = "bearing." + s.name + ".";
-    const auto warn = [&](const std::string& text) { summary.warnings.push_back("bearing " + s.name + ": " + text); };
-    if (const auto q = value(head + "specific_load"); above(q, white_metal_load))
-      warn(fmt::format("the load over its projected area is {:.3g} MPa; white metal bears {:g} MPa (ISO 7902-3)",
-                       q.value * 1e-6, white_metal_load * 1e-6));
-    if (const auto q = value(head + "max_pressure"); above(q, white_metal_pressure))
-      warn(
-          fmt::format("the largest film pressure is {:.3g} MPa; white metal yields at about {:g} MPa at 100 degC "
-                      "(ASTM B23)",
-                      q.value * 1e-6, white_metal_pressure * 1e-6));
-    if (const auto q = value(head + "reynolds_number"); is_laminar(s.film) && above(q, laminar_limit(s.geometry)))
-      warn(fmt::format(
-          "the Reynolds number is {:.4g}, and the film is computed as laminar; vortices or turbulence begin "
-          "at {:.4g}: 'turbulence' of a film of type reynolds or thd counts it",
-          q.value, laminar_limit(s.geometry)));
+    const auto check = [&](const char* name, double limit, const std::string& end, double to_unit) {
+      const io::Quantity q = value("bearing." + s.name + "." + name);
+      if (!above(q, limit)) return;
+      const auto known =
+          std::find_if(sentences.begin(), sentences.end(), [&](const auto& e) { return e.first == end; });
+      auto& bearings =
+          known == sentences.end() ? sentences.emplace_back(end, std::vector<std::string>{}).second : known->second;
+      bearings.push_back(fmt::format("{} ({:.4g})", s.name, q.value * to_unit));
+    };
+    check("specific_load", white_metal_load,
+          fmt::format("load over projected area in MPa; white metal bears {:g} MPa (ISO 7902-3)",
+                      white_metal_load * 1e-6),
+          1e-6);
+    check("max_pressure", white_metal_pressure,
+          fmt::format("largest film pressure in MPa; white metal yields at about {:g} MPa at 100 degC (ASTM B23)",
+                      white_metal_pressure * 1e-6),
+          1e-6);
+    if (is_laminar(s.film))
+      check(
+          "reynolds_number", laminar_limit(s.geometry),
+          fmt::format("Reynolds number of a film that is computed as laminar; vortices or turbulence begin at {:.4g}: "
+                      "'turbulence' of a film of type reynolds or thd counts it",
+                      laminar_limit(s.geometry)),
+          1);
     if (const auto* gas = film::find<film::Gas>(s.film))
-      if (const auto q = value(head + "knudsen_number"); above(q, slip_limit(*gas)))
-        warn(fmt::format(
-            "the Knudsen number is {:.3g} where the film is thinnest; its law of slip holds up to {:g}: see "
-            "'slip'",
-            q.value, slip_limit(*gas)));
+      check("knudsen_number", slip_limit(*gas),
+            fmt::format("Knudsen number where the film is thinnest; its law of slip holds up to {:g}: see 'slip'",
+                        slip_limit(*gas)),
+            1);
   }
+  for (const auto& [end, bearings] : sentences)
+    summary.warnings.push_back(
+        fmt::format("{} {}: {}", bearings.size() == 1 ? "bearing" : "bearings", fmt::join(bearings, ", "), end));
 }
 
 }  // namespace whirl::study

@@ -23,12 +23,18 @@ def warned(study, *words):
 
 def false_peaks(h):
     """A thd film whose equilibria are known to their tolerance: node 4 rises at 2044 rpm, node 20 has one peak."""
-    s = h.run(h.source / "tests/cases/false_peaks.yaml", "false_peaks", ["bearings.*.film.cells=[16, 4]", "studies.1.unbalance_response.points=21"])["r"]
-    for place in ("node 4", "node 20"):
-        speeds = [p["speed"]["value"] for p in peaks(s, place)]
-        h.true(f"{place}: no two peaks at one speed", all(abs(a - b) > 1e-4 * a for i, a in enumerate(speeds) for b in speeds[:i]), str(speeds))
+    s = h.run(h.source / "tests/cases/false_peaks.yaml", "false_peaks")["r"]
     h.true("node 4 has no peak where it rises", not any(2030 < p["speed"]["value"] < 2060 for p in peaks(s, "node 4")), str(peaks(s, "node 4")))
-    h.true("node 20 has one peak", len(peaks(s, "node 20")) == 1, str(peaks(s, "node 20")))
+    near = [p for p in peaks(s, "node 20") if 2030 < p["speed"]["value"] < 2060]
+    h.true("node 20 has one peak there", len(near) == 1, str(near))
+    h.close("its speed [rpm]", near[0]["speed"]["value"], 2044.2, 0.5)
+    h.close("its height [um]", near[0]["semi_major"]["value"] * 1e6, 22.304, 0.005)
+    h.true("why it has no amplification factor", "before the range ends" in near[0]["notes"][0], str(near[0]))
+    h.true("few speeds are added to the 40", s["points"] < 120, str(s["points"]))
+    # The values of this node at two speeds, without any refinement.
+    for speed, height in ((2042.0, 26.531), (2057.1, 26.845)):
+        at = h.run(h.source / "tests/cases/false_peaks.yaml", f"at {speed}", [f"studies.1.unbalance_response={{name: r, unbalance: [three_planes], range: {{from: {speed} rpm, to: {speed + 1} rpm}}, points: 2, nodes: [4], operating_speed: {speed} rpm, refine: false}}"])["r"]
+        h.close(f"node 4 at {speed} rpm [um]", value(at, "operating.node.4.semi_major") * 1e6, height, 0.002)
 
 
 def always_unstable(h):
@@ -53,8 +59,8 @@ def turbine(h):
     out = h.run(h.source / "tests/cases/steam_turbine.yaml", "turbine", ["service_speed=7500 rpm", "studies.1.modes.points=13", "studies.2.unbalance_response.points=60"])
     s = out["G2.5"]
     high = [p for p in s["peaks"] if (p["amplification_factor"]["value"] or 0) > 60]
-    h.true("a peak with an amplification of 72", any(abs(p["amplification_factor"]["value"] - 72) < 1 for p in high), str(high))
-    h.true("is warned of with its number", warned(s, "amplification factors above 30: 7"), str(s.get("warnings")))
+    h.true("a peak with an amplification of 72", any(abs(p["amplification_factor"]["value"] - 72.5) < 0.3 for p in high), str(high))
+    h.true("is warned of with its number", warned(s, "amplification factors above 30: 72.5 at 5141 rpm"), str(s.get("warnings")))
     h.true("the modes warn as well", warned(out["Campbell"], "amplification factors above 30"), str(out["Campbell"].get("warnings")))
     h.close("operating speed [rpm]", value(s, "operating_speed"), 7500, 1e-9)
     service = whole(h, "turbine")["service_speed"]
@@ -70,7 +76,7 @@ def pump(h):
     """Water in plain bearings: the Reynolds number is 2680."""
     s = h.run(h.source / "tests/cases/vertical_pump.yaml", "pump", ["studies=[{static: {name: s, speed: 3000 rpm}}]"])["s"]
     h.close("Reynolds number", value(s, "bearing.B1.reynolds_number"), 995 * 314.159265 * 0.04 * 150e-6 / 0.7e-3, 1e-6)
-    h.true("is above the laminar limit", warned(s, "bearing B1", "2679", "laminar"), str(s.get("warnings")))
+    h.true("is above the laminar limit", warned(s, "B1 (2679)", "B4 (2679)", "laminar"), str(s.get("warnings")))
     s = h.run(h.source / "tests/cases/vertical_pump.yaml", "turbulent", ["studies=[{static: {name: s, speed: 3000 rpm}}]", "bearings.{B1,B2,B3,B4}.film.turbulence=constantinescu",
                                                                          "lubricants.water.viscosity=700 mPa s"])
     top = whole(h, "turbulent").get("warnings", [])

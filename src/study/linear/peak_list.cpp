@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::study {
@@ -63,10 +64,22 @@ std::string verdict_of(const io::PeakEntry& peak) {
 }
 
 void warn_of_amplification(io::StudySummary& summary) {
-  std::vector<std::string> high;
+  struct High {
+    double factor, speed;
+    std::string words;
+  };
+  std::vector<High> high;  // one of each resonance, which shows at many places
+  constexpr double near = 0.01;
   const auto see = [&](const io::Quantity& factor, const io::Quantity& speed, const std::string& where) {
-    if (factor.value - bar_of(factor) > high_amplification)
-      high.push_back(fmt::format("{:.3g} at {:.5g} {}{}", factor.value, speed.value, speed.unit, where));
+    if (!(factor.value - bar_of(factor) > high_amplification)) return;
+    const High here{factor.value, speed.value,
+                    fmt::format("{:.3g} at {:.5g} {}{}", factor.value, speed.value, speed.unit, where)};
+    const auto known = std::ranges::find_if(
+        high, [&](const High& h) { return std::abs(h.speed - here.speed) < near * std::abs(here.speed); });
+    if (known == high.end())
+      high.push_back(here);
+    else if (here.factor > known->factor)
+      *known = here;
   };
   for (const auto& [name, factor] : summary.values) {
     const std::string tail = "amplification_factor";
@@ -75,15 +88,15 @@ void warn_of_amplification(io::StudySummary& summary) {
     for (const auto& [other, q] : summary.values)
       if (other == speed) see(factor, q, "");
   }
-  for (const io::PeakEntry& p : summary.peaks) see(p.amplification_factor, p.speed, " (" + p.place + ")");
+  for (const io::PeakEntry& p : summary.peaks)
+    if (p.stability != "unstable") see(p.amplification_factor, p.speed, " (" + p.place + ")");
   if (high.empty()) return;
-  constexpr std::size_t most = 4;
-  const std::size_t left = high.size() > most ? high.size() - most : 0;
-  high.resize(high.size() - left);
+  std::vector<std::string> words;
+  for (const High& h : high) words.push_back(h.words);
   summary.warnings.push_back(fmt::format(
-      "amplification factors above {:g}: {}{}. So little damping is unusual for a machine that runs through "
-      "or near such a speed: look at the damping of the bearings",
-      high_amplification, fmt::join(high, ", "), left > 0 ? fmt::format(" and {} more", left) : ""));
+      "amplification factors above {:g}: {}. So little damping is unusual for a machine that runs through or "
+      "near such a speed: look at the damping of the bearings",
+      high_amplification, fmt::join(words, ", ")));
 }
 
 }  // namespace whirl::study
