@@ -4,9 +4,10 @@
 cases_response.py PROGRAM SOURCE [LAUNCHER WORDS...]
 """
 import json
+import subprocess
 import sys
 
-from harness import Harness, value
+from harness import Harness, kill, value
 
 
 def whole(h, name):
@@ -43,6 +44,12 @@ def always_unstable(h):
     h.true("a warning", warned(s, "unstable from 400 to 4000 rpm", "no vibration settles"), str(s.get("warnings")))
     h.true("every peak is marked", s["peaks"] and all(p["stability"] == "unstable" for p in s["peaks"]), str(s["peaks"]))
     h.true("the largest peaks are there", len(peaks(s, "node 3")) == 2, str(peaks(s, "node 3")))
+    transfer = "studies=[{frequency_response: {name: t, speed: 4000 rpm, inputs: [{node: 3, direction: x}], range: {from: 10 rad/s, to: 500 rad/s}, points: 20}}]"
+    s = h.run(h.source / "tests/cases/always_unstable.yaml", "transfer", [transfer])["t"]
+    h.true("transfer functions know it", s["stability"] == "unstable" and warned(s, "at 4000 rpm the equilibrium is unstable", "no vibration settles"), str(s.get("warnings")))
+    # Damped evenly the springs that are coupled across bring no instability.
+    s = h.run(h.source / "tests/cases/always_unstable.yaml", "damped", [transfer, "bearings.*.film.damping=2e4 N s/m"])["t"]
+    h.true("damped, it is stable", s["stability"] == "stable" and not s.get("warnings"), f"{s['stability']} {s.get('warnings')}")
 
 
 def past_threshold(h):
@@ -87,9 +94,19 @@ def pump(h):
     h.true("12 Pa s and 0.995 kg/m^3 are not", any("viscosity of 1.2e+04 mPa s" in w for w in top) and any("density of 0.995 kg/m^3" in w for w in top), str(top))
 
 
+def flushed(h):
+    """What a study found stands on a file's screen while the next one still runs."""
+    studies = ("studies=[{static: {name: quick, speed: 4000 rpm}}, {unbalance_response: {name: long, unbalance: [u], nodes: [3], points: 20000, "
+               "range: {from: 400 rpm, to: 4000 rpm}}}]")
+    process = subprocess.Popen(h.command(h.source / "tests/cases/always_unstable.yaml", h.work / "flushed", [studies]), stdout=subprocess.PIPE, text=True)
+    lines = [process.stdout.readline() for _ in range(2)]
+    h.true("the first study is told before the second one ends", any(l.startswith("quick: completed") for l in lines) and process.poll() is None, str(lines))
+    kill(process)
+
+
 if __name__ == "__main__":
     program, source, *launcher = sys.argv[1:]
     harness = Harness(program, source, launcher)
-    for case in (false_peaks, always_unstable, past_threshold, turbine, pump):
+    for case in (false_peaks, always_unstable, past_threshold, turbine, pump, flushed):
         case(harness)
     harness.finish()
