@@ -59,6 +59,9 @@ public:
 
   io::Service finish() {
     put_stability();
+    // Peaks of a response stand for critical speeds where no modes were computed.
+    if (!below_) below_ = std::move(peak_below_);
+    if (!above_) above_ = std::move(peak_above_);
     for (const auto* fact :
          {&threshold_, &decrement_, &below_, &above_, &film_, &pressure_, &temperature_, &vibration_})
       if (*fact) service_.facts.push_back(**fact);
@@ -162,7 +165,8 @@ private:
     ServiceFact fact{what + (at <= speed_ ? " below" : " above"), place, q, {}, study};
     fact.mark =
         fmt::format("{:.1f} % from the service speed{}{}", 100 * std::abs(margin), more.empty() ? "" : ", ", more);
-    auto& kept = at <= speed_ ? below_ : above_;
+    const bool peak = what == "peak";
+    auto& kept = at <= speed_ ? (peak ? peak_below_ : below_) : (peak ? peak_above_ : above_);
     if (kept && std::abs(deck::number_to_si(kept->value.value, kept->value.unit) - speed_) <= std::abs(at - speed_))
       return;
     kept = std::move(fact);
@@ -243,7 +247,8 @@ private:
   const io::Group& results_;
   io::Service service_;
   std::vector<std::string> verdicts_, voters_;
-  std::optional<ServiceFact> threshold_, decrement_, below_, above_, film_, pressure_, temperature_, vibration_, cycle_;
+  std::optional<ServiceFact> threshold_, decrement_, below_, above_, peak_below_, peak_above_, film_, pressure_,
+      temperature_, vibration_, cycle_;
 };
 
 }  // namespace

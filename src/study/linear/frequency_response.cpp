@@ -227,7 +227,7 @@ void put_growth(const std::vector<double>& found, const std::string& where, io::
     else
       growth.pairs.emplace_back(found[k], found[k + 1]);
   if (growth.any() || growth.missed == 0) summary.stability = growth.any() ? "unstable" : "stable";
-  warn_of(growth, where, "no vibration settles into these transfer functions", summary);
+  warn_of(growth, where, "No vibration settles into these transfer functions", summary);
 }
 
 }  // namespace
