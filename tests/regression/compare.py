@@ -76,6 +76,9 @@ def same_results(one, other, within=1e-8):
             if key.endswith("_imag") and key[:-4] + "real" in a:
                 # A complex number has one accuracy: where all of them are real, imaginary parts are rounding.
                 scale = max(numpy.nanmax(numpy.abs(x), initial=0) for x in (a[key], a[key[:-4] + "real"]))
+            of_pair = key.removesuffix("damping_real") + "frequency"
+            if key.endswith("damping_real") and of_pair in a:
+                scale = max(numpy.nanmax(numpy.abs(x), initial=0) for x in (a[key], a[of_pair]))
             d = difference(key, a[key], b[key], scale)
             if "uncertainty" in key:
                 d /= 100  # of a bar as small a part of its number as this says nothing

@@ -212,7 +212,7 @@ TEST(Parameters, LinearOnesHaveExactDerivatives) {
     s.residual(0.7, x.get(), rate.get(), to.get());
     core::check(VecAXPY(to.get(), -1, from.get()));
     core::check(VecScale(to.get(), 1 / (99 * value)));
-    EXPECT_LE(relative(by, to), 1e-12);
+    EXPECT_LE(relative(by, to), 1e-11) << "rounding of forces that do not vary";
   }
 }
 

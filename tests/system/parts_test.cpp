@@ -45,7 +45,8 @@ TEST_P(Parts, MeetAtPortsAlone) {
   system::RotorSystem s(PETSC_COMM_WORLD, machine(GetParam()), 250.0);
   ASSERT_EQ(s.own_states() > 0, GetParam());
   s.set_acceleration(30.0);
-  const system::RotorPart hub(s.comm(), s.train(), GetParam() && core::size_of(s.comm()) > 1);
+  system::RotorPart hub(s.comm(), s.train(), GetParam() && core::size_of(s.comm()) > 1);
+  hub.follow(250.0);
   EXPECT_EQ(hub.coordinates(), s.coordinates());
   core::Vector scale = core::make_vector(s.comm(), s.local_size(), PETSC_DETERMINE),
                rows = core::duplicate(scale.get()), f = core::duplicate(scale.get());
