@@ -36,8 +36,8 @@ std::vector<double> DensePencil::rounding() const {
   for (const auto& v : values_)
     if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v));
   const auto asked = [&](std::complex<double> v) { return std::abs(v.real()) <= asked_below * largest; };
-  if (std::none_of(values_.begin(), values_.end(), asked)) return out;
-  const Eigen::MatrixXcd left = this->left();
+  const bool any = std::any_of(values_.begin(), values_.end(), asked);
+  const Eigen::MatrixXcd left = any ? this->left() : Eigen::MatrixXcd();
   for (std::size_t k = 0; k < values_.size(); ++k) {
     if (!asked(values_[k])) continue;
     const double size = a_.norm() + std::abs(values_[k]) * b_.norm(), most = std::sqrt(eps) * size / b_.norm();
@@ -46,6 +46,17 @@ std::vector<double> DensePencil::rounding() const {
         left.size() > 0 ? (eps * size * vectors_[k].norm() + left_over) * left.row(static_cast<Eigen::Index>(k)).norm()
                         : 1e-11 * largest;
     out[k] = std::isfinite(first) ? std::min(first, most) : most;
+  }
+  // One that grows must solve each row. The QZ algorithm is stable for the whole matrix only: where stiff springs meet
+  // light masses it leaves eigenvalues whose rows do not even agree in the first digit.
+  constexpr double meaningless = 0.1;
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    const std::complex<double> v = values_[k];
+    if (!(v.real() > out[k]) || !std::isfinite(std::abs(v))) continue;
+    const Eigen::VectorXd size =
+        a_.cwiseAbs() * vectors_[k].cwiseAbs() + std::abs(v) * (b_.cwiseAbs() * vectors_[k].cwiseAbs());
+    const Eigen::VectorXd left_over = (a_ * vectors_[k] - v * (b_ * vectors_[k])).cwiseAbs();
+    if ((left_over.array() > meaningless * size.array()).any()) out[k] = std::abs(v);
   }
   return out;
 }

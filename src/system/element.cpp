@@ -90,9 +90,9 @@ void describe(deck::Description<MassBlocks>& d) {
 }
 
 void describe(deck::Description<SlopeTerms>& d) {
-  d.add("stiffness", &SlopeTerms::stiffness, "of K");
-  d.add("damping", &SlopeTerms::damping, "of C");
-  d.add("mass", &SlopeTerms::mass, "of M");
+  d.add("stiffness", &SlopeTerms::stiffness, "what slopes add to K");
+  d.add("damping", &SlopeTerms::damping, "what slopes add to C");
+  d.add("mass", &SlopeTerms::mass, "what slopes add to M");
 }
 
 void describe(deck::Description<ElementAt>& d) {

@@ -52,7 +52,7 @@ TEST(Csv, PlacesHaveTheLabelsOfTheirDataset) {
   o.put("speed", {1, 2}, "rad/s", "");
   o.put("order", {0.5, 1}, "1", "");
   o.put("x", {2, 2, 2}, {1, 2, 3, 4, 5, 6, 7, 8}, "m", "");
-  EXPECT_EQ(text(csv_tables(tree), "orders"), "") << "nobody knows what is what";
+  EXPECT_EQ(text(csv_tables(tree), "orders"), "none") << "nobody knows what is what";
   o.label_each({labels_of({0.5, 1}, "order"), {"a", "b"}});
   EXPECT_EQ(text(csv_tables(tree), "orders"),
             "order,speed [rad/s],x.order 0.5.a [m],x.order 0.5.b [m],x.order 1.a [m],x.order 1.b [m]\n0.5,1,1,2,3,4\n"

@@ -67,7 +67,7 @@ def rigid(h):
         h.close("upper folds end there, speed [rad/s]", end["value"], c["value"],
                 end["value_uncertainty"] + abs(slope) * c["second_value_uncertainty"])
         h.true("bars of a hundredth of a percent", max(c["second_value_uncertainty"], end["second_value_uncertainty"]) < 1e-4 * c["second_value"],
-               f"{c['uncertainty']}, {end['uncertainty']}")
+               f"{c['second_value_uncertainty']}, {end['second_value_uncertainty']}")
         h.close("last point of the curve, speed [rad/s]", jump[0][np.argmin(jump[1])], c["value"], 1e-3 * c["value"])
     h.true("amplitudes fall to a fiftieth of a clearance", 0.0199 < amplitudes(h, "chart", "small whirl jumps").min() < 0.0201)
 

@@ -49,7 +49,7 @@ def coefficients(h):
     h.close("x [um]", 1e6 * value(study, "speed.2000.x"), -same["place_um"][1], 1e-4)
     h.close("y [um], against the finest", 1e6 * value(study, "speed.2000.y"), finest["place_um"][0],
             1e6 * study["values"]["speed.2000.y"]["uncertainty"])
-    for letter in "KB":
+    for letter in "KC":
         m, wanted, error = matrix(study, letter, 1, 4), turned(same[letter]), bars(study, letter, 1, 4)
         best = turned(finest[letter])
         for name, block in (("translation", np.s_[:2, :2]), ("tilt", np.s_[2:, 2:])):
@@ -66,7 +66,7 @@ def coefficients(h):
     ratios = [r["ratio"] for r in reference["over_frequency"]]
     s = h.run(deck, "frequencies", [LOAD % f", frequencies: [{', '.join(map(str, ratios))}]"], launcher=[])["c"]
     for r in reference["over_frequency"]:
-        for letter in "KB":
+        for letter in "KC":
             m, wanted = matrix(s, letter, r["ratio"], 2), turned(r[letter])[:2, :2]
             size = np.abs(wanted).max()
             h.close(f"{letter} at {r['ratio']:g} of the speed: largest difference", np.abs(m - wanted).max() / size, 0, 5e-3)
@@ -89,7 +89,7 @@ def pressures(h):
         s = h.run(deck, name, ["bearings.A.film.orifices=[%s]" % ", ".join(rings % (t["ps"], z) for z in places),
                   f"studies=[{{dynamic_coefficients: {{name: c, load: 49.05 N, speeds: [{speed!r} rad/s], frequencies: [{ratio!r}]}}}}]"], launcher=[])["c"]
         head = next(k for k in s["values"] if k.endswith("K.xx"))[:-4]
-        k, b = ([[value(s, f"{head}{letter}.{i}{j}") for j in "xy"] for i in "xy"] for letter in "KB")
+        k, b = ([[value(s, f"{head}{letter}.{i}{j}") for j in "xy"] for i in "xy"] for letter in "KC")
         w = t["whirl_frequency"]
         found = np.linalg.eigvals(np.array(k) + 1j * w * np.array(b))
         free = min(found, key=lambda e: abs(e - 5 * w * w))
@@ -141,7 +141,7 @@ def same_everywhere(h):
     # An oil film has no frequency: its coefficients are those of `static` at any.
     oil = h.run(h.source / "inputs/pump/pump.yaml", "oil", ["studies=[{dynamic_coefficients: {name: c, bearing: dry, eccentricity: 0.5, "
                 "attitude: -60 deg, speeds: [2950 rpm], frequencies: [0.1, 3], tilt: false}}]"], launcher=[])["c"]
-    for letter in "KB":
+    for letter in "KC":
         one, three = (value(oil, f"speed.2950.ratio.{r}.{letter}.yy") for r in ("0.1", "3"))
         h.close(f"oil: {letter}.yy at two frequencies", three / one, 1, 1e-9)
     load = "studies=[{dynamic_coefficients: {name: c, load: 5000 N, speeds: [2000 rad/s]}}]"

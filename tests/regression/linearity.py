@@ -148,7 +148,7 @@ def short(h):
               launcher=[])["c"]
     for line, f in zip(lines, at):
         head = next(k for k in c["values"] if k.endswith("K.xx") and abs(float(k.split("ratio.")[1].split(".K")[0]) / (2 * math.pi * f / 2000) - 1) < 1e-4)[:-4]
-        k, b = ([[value(c, f"{head}{letter}.{i}{j}") for j in "xy"] for i in "xy"] for letter in "KB")
+        k, b = ([[value(c, f"{head}{letter}.{i}{j}") for j in "xy"] for i in "xy"] for letter in "KC")
         wanted = transfer(k, b, 5, f)
         found = np.array([[t[f"linear/g_{i}{j}"][line] * cmath.exp(1j * t[f"linear/g_{i}{j}_phase"][line]) for j in "xy"] for i in "xy"])
         h.close(f"G at {f:.4g} Hz against K + i w B", np.abs(found - wanted).max() / np.abs(wanted).max(), 0, 1e-4)

@@ -137,7 +137,7 @@ TEST(Sweep, VariantsAreDecksOfTheirOwn) {
            "  - sweep:\n"
            "      of: [balanced]\n"
            "      variants:\n"
-           "        wide: {\"bearings.{B2,B3}.geometry.clearance\": x1.2, bearings.B5.elevation: +500 um}\n"
+           "        wide: {\"bearings.{B2,B3}.geometry.clearance\": x1.2, bearings.B5.elevation: by +500 um}\n"
            "        arc: {\"bearings.{B2,B3,B4}.geometry.arc\": 140 deg}\n");
   const auto& variants = sweep_of(deck).variants();
   ASSERT_EQ(variants.size(), 2U);
@@ -164,14 +164,14 @@ TEST(Sweep, GridsHoldEveryCombination) {
            "  - sweep:\n"
            "      of: [balanced]\n"
            "      grid:\n"
-           "        bearings.B5.elevation: [+0 um, +500 um]\n"
+           "        bearings.B5.elevation: [by +0 um, by +500 um]\n"
            "        bearings.B1.pedestal.stiffness: {from: x0.1, to: x10, points: 3, spacing: log}\n"
            "        bearings.B1.geometry.clearance: {from: 100 um, to: 0.2 mm, points: 3}\n");
   const auto& variants = sweep_of(deck).variants();
   ASSERT_EQ(variants.size(), 18U);
-  EXPECT_EQ(variants.front().name, "elevation +0 um, stiffness x0.1, clearance 100 um");
-  EXPECT_EQ(variants[1].name, "elevation +0 um, stiffness x0.1, clearance 150 um");
-  EXPECT_EQ(variants.back().name, "elevation +500 um, stiffness x10, clearance 200 um");
+  EXPECT_EQ(variants.front().name, "elevation by +0 um, stiffness x0.1, clearance 100 um");
+  EXPECT_EQ(variants[1].name, "elevation by +0 um, stiffness x0.1, clearance 150 um");
+  EXPECT_EQ(variants.back().name, "elevation by +500 um, stiffness x10, clearance 200 um");
   EXPECT_NEAR(variants.back().deck->machine.bearings[0].pedestal->stiffness[1], 1.5e10, 1);
   EXPECT_NEAR(variants[3].deck->machine.bearings[0].pedestal->stiffness[0], 1e9, 1e-3);
   EXPECT_NEAR(variants[1].deck->machine.bearings[0].geometry->clearance, 150e-6, 1e-18);

@@ -166,7 +166,8 @@ std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, std::v
   for (std::size_t k = 0; k < moving.size(); ++k) {
     spectral::Mode& m = modes[k];
     m.lambda = moving[k].lambda;
-    // Those were of the machine without loss.
+    m.rounding = 1e-9 * std::abs(m.lambda);  // Newton's method has solved it
+    // These were of the machine without loss.
     m.condition = std::numeric_limits<double>::quiet_NaN();
     m.multiplicity = m.vectors = 1;
     m.left.clear();
