@@ -177,7 +177,7 @@ def bearing_map(root, name, soft):
     limit = np.where(e < 0.75, 2.7 + e**4, np.nan)
     put(table, eccentricity=e, attitude=attitude, sommerfeld=load, x=e * np.sin(attitude), y=-e * np.cos(attitude),
         speed_limit=limit, whirl_ratio=limit / limit * 0.5)
-    entries = {f"{letter}_{entry}": (k + 1) * load - k for letter in "kb" for k, entry in enumerate(("xx", "xy", "yx", "yy"))}
+    entries = {f"{letter}_{entry}": (k + 1) * load - k for letter in "kc" for k, entry in enumerate(("xx", "xy", "yx", "yy"))}
     put(table, **entries)
     theta = np.linspace(0, 2 * np.pi, 91)
     put(g.create_group("profiles"), sommerfeld=[2.5], theta=theta + 0.5 * np.pi, pressure=[np.sin(theta)], thickness=[1 + 0.5 * np.cos(theta)])

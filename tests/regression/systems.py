@@ -69,7 +69,7 @@ def whole(h):
     # The determinant of the same matrix is the square of the frequency.
     mu = (32 * math.sin(math.pi / 32) / hopf_length(16)) ** 2
     omega = math.sqrt(4 * 5.45 - (4 + 0.004 * mu) ** 2)
-    h.close("its frequency [rad/s]", value(run["uniform"], "whirl_frequency"), omega, 1e-6)
+    h.close("its frequency [rad/s]", value(run["uniform"], "stable_below.1.whirl_frequency"), omega, 1e-6)
     h.true("supercritical, by equilibrium and by cycle branch",
            first["criticality"] == run["oscillation"]["bifurcations"][0]["criticality"] == "supercritical")
     motion = run["from the uniform state"]

@@ -171,7 +171,6 @@ std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, std::v
     m.condition = std::numeric_limits<double>::quiet_NaN();
     m.multiplicity = m.vectors = 1;
     m.left.clear();
-    m.rounding = std::max(m.rounding, 1e-12 * std::abs(m.lambda));
     Eigen::Index largest = 0;
     moving[k].shape.cwiseAbs().maxCoeff(&largest);
     const Eigen::VectorXcd shape = (moving[k].shape / moving[k].shape(largest)).cwiseProduct(pencil.scale);
