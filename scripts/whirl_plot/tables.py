@@ -371,7 +371,7 @@ def inputs(results):
     amounts, masses = applied_unbalance(results)
     for name, u in (deck.get("unbalance") or {}).items():
         planes = ", ".join(f"node {p.get('node')}: " + " ".join([f"{k} {quantity(p[k])}" for k in ("eccentricity", "amount", "fraction", "phase") if k in p]
-                                                                + [f"(U = {person(amounts[name, k], 'kg m', 4)})"] * ((name, k) in amounts))
+                                                                + ([f"(U = {person(amounts[name, k], 'kg m', 4)})"] if (name, k) in amounts else []))
                            for k, p in enumerate(u.get("planes", []), 1))
         rows.append([name, u.get("grade", ""), u.get("rotor", ""), person(masses[name], "kg", 4) if name in masses else "",
                      quantity(u.get("service_speed", "")), planes])
