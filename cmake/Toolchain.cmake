@@ -5,8 +5,7 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 add_library(whirl_flags INTERFACE)
-# Several files compiled as one shadow each other's names.
-target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:${WHIRL_UNITY}>>:-Wshadow>
+target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow
                        -Wnon-virtual-dtor -Wold-style-cast -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 reports its own AVX-512 intrinsics as uninitialised.

@@ -46,10 +46,7 @@ quietly() {
 # Configures and builds the release preset in build/: the targets named, or everything.
 build_release() {
   cd "$whirl_root"
-  # Who builds from nothing gains by compiling several files at a time. A folder that is there keeps its setting.
-  local first=()
-  [ -e build/CMakeCache.txt ] || first=(-DWHIRL_UNITY=ON)
-  quietly cmake --preset release "${first[@]}"
+  quietly cmake --preset release
   # Configuring has just looked for new files, so ninja's plan is complete; silence if there is nothing to do.
   if ! ninja -C build -n "$@" | grep -q 'no work to do'; then
     NINJA_STATUS='[%f/%t %es] ' cmake --build --preset release ${1:+--target "$@"} >&2
