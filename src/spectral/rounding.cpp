@@ -47,8 +47,9 @@ std::vector<double> DensePencil::rounding() const {
                         : 1e-11 * largest;
     out[k] = std::isfinite(first) ? std::min(first, most) : most;
   }
-  // One that grows must solve each row. The QZ algorithm is stable for the whole matrix only: where stiff springs meet
-  // light masses it leaves eigenvalues whose rows do not even agree in the first digit.
+  // A growing eigenvalue must solve each row. The QZ algorithm is backward stable for the norm of the pencil, not row
+  // by row: with stiff springs on light masses it returns eigenvalues whose rows do not agree in the first digit. Their
+  // sign means nothing. Componentwise backward error: Oettli and Prager (1964), Numerische Mathematik 6, 405.
   constexpr double meaningless = 0.1;
   for (std::size_t k = 0; k < values_.size(); ++k) {
     const std::complex<double> v = values_[k];

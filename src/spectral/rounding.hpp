@@ -10,7 +10,7 @@ namespace whirl::spectral {
 /// The pencil A x = lambda B x with what a solver found of it.
 class DensePencil {
 public:
-  /// Rounding is estimated of eigenvalues whose real part is below this part of the largest modulus.
+  /// Rounding is estimated for eigenvalues whose real part is below this part of the largest modulus.
   static constexpr double asked_below = 1e-7;
   DensePencil(Eigen::MatrixXd a, Eigen::MatrixXd b) : a_(std::move(a)), b_(std::move(b)) {}
   /// The next eigenvalue with real and imaginary part of its right vector (the latter may be empty).

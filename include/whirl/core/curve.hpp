@@ -23,8 +23,8 @@ public:
   [[nodiscard]] bool varies() const { return abscissae_.size() > 1; }
   [[nodiscard]] double first() const { return abscissae_.front(); }
   [[nodiscard]] double last() const { return abscissae_.back(); }
-  /// Values of all columns at x and their derivatives there, zero beyond the rows; of a linear curve at a row that of
-  /// the interval above.
+  /// Values and derivatives of all columns at x. Beyond the rows the derivatives are zero. At a row a linear curve has
+  /// the derivative of the interval above.
   void at(double x, std::span<double> value, std::span<double> slope) const;
 
 private:

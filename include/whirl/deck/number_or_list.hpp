@@ -15,7 +15,7 @@ struct NumberOrListAccess {
 };
 [[nodiscard]] CodecPtr number_or_list_codec(CodecPtr number, CodecPtr list, NumberOrListAccess access);
 
-/// The bounds are those of the number alone: entries of the list have none.
+/// The bounds apply to the single number. Entries of the list have no bounds.
 template <std::size_t N>
 struct CodecOf<std::variant<double, std::array<double, N>>> {
   using A = std::array<double, N>;

@@ -20,11 +20,12 @@ struct MeshLimit {
   double limit = std::numeric_limits<double>::quiet_NaN(), error = limit;
   double order = limit;  ///< shown by the last three values
 };
-/// Richardson's extrapolation with the order that the last three values show and a safety factor of 1.25 if it lies
-/// between 1/2 and `theory`, that of the scheme. A higher one is chance: the last two meshes agree too well. Then the
-/// order is that of theory and the error no less than the difference before foretells with it. Below 1/2, with two
-/// values, where they waver, or where forces have kinks, the factor is 3; below 1/2 the order is 1/2.
-/// Source: Roache (1994).
+/// Richardson's extrapolation with the observed order of the last three values.
+/// - An order between 1/2 and `theory` (the order of the scheme) has the safety factor 1.25.
+/// - A higher order is chance: the last two meshes agree too well. The order is then `theory`, and the error is at
+///   least what the difference before predicts with it.
+/// - The factor is 3 for an order below 1/2 (taken as 1/2), with two values, where they waver, or for forces with
+/// kinks. Source: Roache (1994).
 [[nodiscard]] MeshLimit mesh_limit(const std::vector<double>& values, double theory = 2, bool kinks = false);
 
 class MeshConvergence final : public StudyWith<MeshConvergenceOptions> {
