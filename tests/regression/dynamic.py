@@ -49,7 +49,7 @@ def coefficients(h):
     h.close("x [um]", 1e6 * value(study, "speed.2000.x"), -same["place_um"][1], 1e-4)
     h.close("y [um], against the finest", 1e6 * value(study, "speed.2000.y"), finest["place_um"][0],
             1e6 * study["values"]["speed.2000.y"]["uncertainty"])
-    for letter in "KC":
+    for letter in "KB":
         m, wanted, error = matrix(study, letter, 1, 4), turned(same[letter]), bars(study, letter, 1, 4)
         best = turned(finest[letter])
         for name, block in (("translation", np.s_[:2, :2]), ("tilt", np.s_[2:, 2:])):
@@ -66,7 +66,7 @@ def coefficients(h):
     ratios = [r["ratio"] for r in reference["over_frequency"]]
     s = h.run(deck, "frequencies", [LOAD % f", frequencies: [{', '.join(map(str, ratios))}]"], launcher=[])["c"]
     for r in reference["over_frequency"]:
-        for letter in "KC":
+        for letter in "KB":
             m, wanted = matrix(s, letter, r["ratio"], 2), turned(r[letter])[:2, :2]
             size = np.abs(wanted).max()
             h.close(f"{letter} at {r['ratio']:g} of the speed: largest difference", np.abs(m - wanted).max() / size, 0, 5e-3)
