@@ -218,7 +218,7 @@ def page_of(results):
         f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title><style>{STYLE}</style>",
         f"<h1>{title}</h1><p class=note>{', '.join(facts)}</p>",
         f"<nav><a href='#machine'>The machine</a>{links}<a href='#options'>Options</a></nav>",
-        warned([str(w) for w in summary.get("warnings", [])] if isinstance(summary.get("warnings"), list) else []), at_service_speed(results),
+        at_service_speed(results), warned([str(w) for w in summary.get("warnings", [])] if isinstance(summary.get("warnings"), list) else []),
         in_brief(results), "<h2 id=machine>The machine</h2>", *(picture(p) for p in machine), *(show(t) for t in inputs), show(conventions, folded=True),
         *([f"<h2 id=together>All together</h2>{''.join(picture(p) for p in together)}"] if together else []),
         *([show(safe)] if safe else []), *(section(s, p) for s, p in studies), left_over(results),

@@ -5,6 +5,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from .margins import operating_in
 from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, runs, save, speed_axis
 
 NOTE = ("linear response, amplitudes 0-peak; lag behind the shaft angle: x = |X| cos(angle \u2212 lag), the heavy side points along x "
@@ -23,8 +24,9 @@ def number(peak, name):
 
 
 def is_answer(peak):
-    """Whether the linear response is a motion at the peak: about a stable equilibrium, with a film left in every bearing."""
-    return peak.get("stability", "stable") == "stable" and not any(str(n).startswith("no answer") for n in peak.get("notes", []))
+    """Whether the linear response is a motion with a peak there: about a stable equilibrium, with a film left in every bearing, and
+    higher than beside it by more than the bar."""
+    return peak.get("stability", "stable") == "stable" and not any(str(n).startswith(("no answer", "undetermined")) for n in peak.get("notes", []))
 
 
 class Validity:
@@ -76,21 +78,12 @@ def draw_place(study, amplitude_axis, phase_axis, x, data, k, scale, unit, speed
         # Above the axes it covers nothing.
         title += f"\n{top * scale:.3g} {unit} at {number(p, 'speed'):.0f} {speed_unit}" + (f", AF {factor:.1f}" if factor is not None else "")
         if not is_answer(p):
-            title += ", unstable" if p.get("stability") == "unstable" else ", no answer" if p.get("stability", "stable") == "stable" else ", undetermined"
+            title += ", unstable" if p.get("stability") == "unstable" else ", no answer" if any(str(n).startswith("no answer") for n in p.get("notes", [])) else ", undetermined"
     highest = np.nanmax(major) if np.isfinite(major).any() else 0
     amplitude_axis.set_ylim(0, 1.08 * max(highest, 1e-300))
     amplitude_axis.set_title(title, fontsize=9)
     draw_lag(phase_axis, x, data["x_phase"][:, k], X, validity)
     draw_lag(phase_axis, x, data["y_phase"][:, k], Y, validity)
-
-
-def operating_in(study):
-    """Lowest and highest operating speed in the unit of the study; None if it had none."""
-    values = study.values
-    for low, high in (("operating_speed",) * 2, ("operating_range.from", "operating_range.to")):
-        if low in values and high in values and values[low].value is not None and values[high].value is not None:
-            return values[low].value, values[high].value
-    return None
 
 
 def draw_operating(axis, operating, x):

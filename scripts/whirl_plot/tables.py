@@ -7,8 +7,8 @@ import numpy as np
 from . import sweep_tables
 from .bifurcation import Followed
 from .locus import WORDS as LOCUS_WORDS
-from .margins import MARGIN_HEAD, MARGIN_NOTE, margins, operating_range, range_in, told, told_margins
-from .response import number, operating_in, peaks_at
+from .margins import MARGIN_HEAD, margin_cells, margin_note, operating_in
+from .response import number, peaks_at
 from .style import speed_axis
 from .units import WORDS, digits, person, quantity, scale_of, with_bar
 
@@ -73,21 +73,16 @@ def modes(study):
     out, unit = [], study.attribute("speed_unit", "rad/s")
     to_speed, _, to_frequency, frequency_unit = speed_axis(unit)
     if study.has("critical/speed"):
-        decrement = study.get("critical/log_decrement")
-        operating = operating_range(study)
-        rows, damped, known = [], [], any(k.startswith("critical.") and k.endswith(".separation_margin") for k in study.values)
+        operating, verdicts = operating_in(study), study.get("critical/verdict")
+        rows, damped = [], []
         for k, (speed, mode) in enumerate(zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/mode")))):
-            delta = None if decrement is None else float(np.atleast_1d(decrement)[k])
-            head = f"critical.{k + 1}."
-            bar = lambda name, own: told(study, head + name) if head + name in study.values else own  # noqa: E731
-            factor = math.pi / delta if delta and delta > 0 else None
-            rows.append([bar("speed", digits(float(speed * to_speed), 5)), int(mode), bar("log_decrement", "\u2013" if delta is None else digits(delta, 3)),
-                         bar("amplification_factor", "\u2013" if factor is None else digits(factor, 3)),
-                         *(told_margins(study, head) if known else margins(speed, factor, operating))])
-            if factor is not None and factor < 2.5:
-                damped.append(rows.pop())
-        head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating or known else [])
-        note = f"operating speed {range_in(operating, to_speed)} {unit}; {MARGIN_NOTE}" if operating else MARGIN_NOTE if known else ""
+            found = [study.values.get(f"critical.{k + 1}.{name}") for name in ("speed", "log_decrement", "amplification_factor", "separation_margin", "required_margin")]
+            speed_at, delta, factor, *margin = [(None, None) if v is None else (v.value, v.uncertainty) for v in found]
+            verdict = "" if verdicts is None else str(np.atleast_1d(verdicts)[k])
+            row = [digits(float(speed * to_speed), 5) if speed_at[0] is None else with_bar(*speed_at), int(mode), with_bar(*delta), with_bar(*factor)]
+            (damped if verdict.startswith("damped") else rows).append(row + (margin_cells(*margin, verdict) if operating else []))
+        head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
+        note = margin_note(operating, unit) if operating else ""
         out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
         if damped:
             out.append(Table("Damped, not critical: amplification factor below 2.5 (API 684)", head, damped))
@@ -119,13 +114,8 @@ def cell(peak, name, factor=1):
     return with_bar(None if size is None else size * factor, bar * factor if isinstance(bar, (int, float)) else None)
 
 
-# The words of the list of peaks in the column that asks whether the margin is enough.
-ENOUGH = {"too near": "no", "far enough": "yes", "damped, not critical": "damped", "undetermined": "undetermined"}
-
-
 def peak_row(peak, operating):
-    required = number(peak, "required_margin")
-    margin = [cell(peak, "separation_margin", 100), "none" if required == 0 else cell(peak, "required_margin", 100), ENOUGH.get(peak.get("verdict"), "\u2013")]
+    margin = margin_cells(*((number(peak, name), (peak.get(name) or {}).get("uncertainty")) for name in ("separation_margin", "required_margin")), peak.get("verdict"))
     return [cell(peak, "speed"), cell(peak, "semi_major", 1e6), cell(peak, "amplification_factor"), *(margin if operating else []),
             str(peak.get("stability", "\u2013")), "; ".join(str(n) for n in peak.get("notes", []))]
 
@@ -137,12 +127,12 @@ def unbalance_response(study):
     operating, rows = operating_in(study), []
     for place in dict.fromkeys(str(p.get("place")) for p in study.peaks):
         rows += [[place if n == 0 else "", *peak_row(p, operating)] for n, p in enumerate(peaks_at(study, place)[:4])]
-    margins_head = ["margin [%]", "required [%]", "enough"] if operating else []
+    margins_head = MARGIN_HEAD if operating else []
     head = ["probe", f"peak at [{unit}]", "amplitude [\u00b5m]", "amplification", *margins_head, "equilibrium", ""]
     if rows and not any(r[-1] for r in rows):
         head, rows = head[:-1], [r[:-1] for r in rows]
     note = "0-peak, semi-major axis of the orbit; amplification N/(N2 \u2212 N1) at 0.707 of the peak (API 684); a response about an unstable equilibrium is no motion"
-    shown = f"; operating speed {' to '.join(digits(v, 5) for v in dict.fromkeys(operating))} {unit}; {MARGIN_NOTE}" if operating else ""
+    shown = f"; {margin_note(operating, unit)}" if operating else ""
     out = [Table("Peaks of the response, the four largest of each probe", head, rows, note + shown)] if rows else []
     at = {k.removeprefix("operating."): v for k, v in study.values.items() if k.startswith("operating.")}
     if at:

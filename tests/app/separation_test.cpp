@@ -30,3 +30,16 @@ TEST(Separation, IsNotAskedOfDampedPeaks) {
   EXPECT_NEAR(separation(3900, 2.5, 3000, 3600).required, 0.1, 1e-15);
   EXPECT_TRUE(std::isnan(separation(2900, std::numeric_limits<double>::quiet_NaN(), 3000, 3600).required));
 }
+
+TEST(Separation, VerdictsLeaveOpenWhatABarContains) {
+  using whirl::io::Quantity;
+  using whirl::study::margin_verdict;
+  const Quantity af{8, "1", {{"uncertainty", 0.1}}}, required{0.14, "1"};
+  EXPECT_EQ(margin_verdict(af, {0.20, "1"}, required), "far enough");
+  EXPECT_EQ(margin_verdict(af, {0.10, "1"}, required), "too near");
+  EXPECT_EQ(margin_verdict(af, {0.10, "1", {{"uncertainty", 0.05}}}, required), "undetermined");
+  EXPECT_EQ(margin_verdict({2.3, "1", {{"uncertainty", 0.1}}}, {0, "1"}, {0, "1"}), "damped, not critical");
+  EXPECT_EQ(margin_verdict({2.45, "1", {{"uncertainty", 0.1}}}, {0, "1"}, {0, "1"}), "undetermined");
+  EXPECT_EQ(margin_verdict(af, {}, {}), "");
+  EXPECT_EQ(margin_verdict({}, {0.1, "1"}, required), "");
+}

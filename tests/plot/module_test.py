@@ -203,11 +203,11 @@ def facts():
     assert solid.get_linestyle() == "-" and np.array_equal(solid.get_ydata(), [0, 1, np.nan, 3], equal_nan=True), solid.get_ydata()
     assert dashed.get_linestyle() == "--" and np.array_equal(dashed.get_ydata(), [3, 4, 5]), (dashed.get_linestyle(), dashed.get_ydata())
     assert response.is_answer({}) and not response.is_answer({"stability": "undetermined"}) and not response.is_answer({"notes": ["no answer: B1"]})
-    from whirl_plot.margins import margins, required_margin
-    assert required_margin(2.4, True) == 0 and abs(required_margin(5.0, True) - 0.17 * (1 - 1 / 3.5)) < 1e-12
-    assert abs(required_margin(5.0, False) - (0.10 + 0.17 * (1 - 1 / 3.5))) < 1e-12
-    assert margins(90.0, 5.0, (100.0, 120.0)) == ["10.0 %", "12.1 %", "no"] and margins(144.0, 2.0, (100.0, 120.0)) == ["20.0 %", "none", "yes"]
-    assert margins(110.0, 5.0, (100.0, 120.0))[0] == "0.0 %" and margins(90.0, 5.0, None) == []
+    from whirl_plot.margins import margin_cells
+    assert margin_cells((0.1, 0.002), (0.12, None), "too near") == ["10.00 \u00b1 0.20", "12", "no"]
+    assert margin_cells((0.2, None), (0.0, None), "damped, not critical") == ["20", "none", "damped"]
+    assert margin_cells((None, None), (None, None), "") == ["\u2013", "\u2013", "\u2013"]
+    assert not response.is_answer({"notes": ["undetermined: it stands 0.1 um above"]})
     assert units.with_bar(5021.412, 6.93) == "5021.4 \u00b1 6.9" and units.with_bar(2.7353, 1.9e-11) == "2.7353"
     assert units.person(1.8e-4, "m") == "180 \u00b5m" and units.person(2.134e5, "N") == "213.4 kN" and units.quantity("0.0067 Pa s") == "6.7 mPa s"
     assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"

@@ -89,10 +89,14 @@ def modes(folder):
         studies["modes"]["values"] = {
             "critical.1.speed": {"value": 689.4, "unit": "rpm", "uncertainty": 1.5}, "critical.1.log_decrement": {"value": 0.2, "unit": "1"},
             "critical.1.separation_margin": {"value": 0.12, "unit": "1"}, "critical.1.required_margin": {"value": 0.16, "unit": "1"},
-            "threshold": {"value": 5022.2, "unit": "rpm", "uncertainty": 3.1}}
-    with results_with(folder, told) as results:
+            "operating_speed": {"value": 3600, "unit": "rpm"}, "threshold": {"value": 5022.2, "unit": "rpm", "uncertainty": 3.1}}
+
+    def verdicts(root):
+        root["studies/modes/critical"].create_dataset("verdict", data=["too near", "far enough", "damped, not critical", "", "far enough"])
+    with results_with(folder, told, verdicts) as results:
         critical = table_of(results["modes"], "Critical speeds: damped frequency equal to the speed")
-        assert critical.rows[0][0] == "689.4 \u00b1 1.5" and critical.rows[0][-3:] == ["12.0 %", "16.0 %", "no"], critical.rows[0]
+        assert critical.rows[0][0] == "689.4 \u00b1 1.5" and critical.rows[0][-3:] == ["12", "16", "no"], critical.rows[0]
+        assert [r[1] for r in table_of(results["modes"], "Damped, not critical: amplification factor below 2.5 (API 684)").rows] == [3]
         assert "unstable from 5022.2 \u00b1 3.1 rpm" in brief.of(results["modes"])
 
 
@@ -130,6 +134,7 @@ def service(folder):
         text = report.page_of(results)
     for words in ("At the service speed, 3600 rpm", "39.20 \u00b1 0.30 %", "68 \u00b0C", "balanced, modes", "not known: no `unbalance_response`", "12000 mPa s is unusual"):
         assert words in text, words
+    assert text.index("At the service speed") < text.index("12000 mPa s is unusual")
     assert text.index("At the service speed") < text.index("In brief") < text.index("The machine</h2>")
 
 

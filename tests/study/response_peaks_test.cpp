@@ -55,28 +55,15 @@ TEST(ResponsePeaks, WhatWasNotRefinedIsUnknown) {
   EXPECT_TRUE(std::isnan(p.errors.factor));
 }
 
-// w^2/sqrt((1 - w^2)^2 + (2 z w)^2), the response to unbalance of one mass, has its top at 1/sqrt(1 - 2 z^2) with the
-// height 1/(2 z sqrt(1 - z^2)).
-double unbalanced(double w, double z) {
-  return w * w / std::hypot(1 - w * w, 2 * z * w);
-}
-
-TEST(ResponsePeaks, BetweenSpeedsThePeakIsThatOfTheParabola) {
-  constexpr double z = 0.05;
-  ResponseCurve c;
-  for (int k = 0; k < 400; ++k) {
-    c.speed.push_back(0.3 + 2.7 * k / 399);
-    c.height.push_back(unbalanced(c.speed.back(), z));
-  }
-  ASSERT_EQ(c.tops().size(), 1U);
-  const Peak p = peak_between(c, c.tops().front());
-  EXPECT_NEAR(p.speed * std::sqrt(1 - 2 * z * z), 1, 1e-4);
-  EXPECT_NEAR(p.height * 2 * z * std::sqrt(1 - z * z), 1, 1e-3);
-  // Where it falls to 0.707 of the top: 1/w^2 = 1 - 2 z^2 +- 2 z sqrt(1 - z^2).
-  const double low = 1 / std::sqrt(1 - 2 * z * z + 2 * z * std::sqrt(1 - z * z)),
-               high = 1 / std::sqrt(1 - 2 * z * z - 2 * z * std::sqrt(1 - z * z));
-  EXPECT_NEAR(p.amplification * (high - low) / p.speed, 1, 0.01);
-  EXPECT_TRUE(std::isnan(p.errors.speed));
+// A rising curve with a hump of a few per cent on it: its prominence is the height above the dip behind it.
+TEST(ResponsePeaks, SaddlesAreAskedOfPeaksThatStandOutLittle) {
+  ResponseCurve c{{1, 2, 3, 4, 5, 6, 7}, {0.5, 0.8, 1.0, 0.97, 0.96, 1.2, 1.5}};
+  ASSERT_EQ(c.tops(), std::vector<std::size_t>{2});
+  const std::vector<double> saddles = saddles_of(c, 2);
+  ASSERT_EQ(saddles, (std::vector<double>{1, 5}));
+  EXPECT_DOUBLE_EQ(saddle_height(c, saddles), 0.96);
+  c.height[4] = 0.85;
+  EXPECT_TRUE(saddles_of(c, 2).empty());
 }
 
 // Equilibria are known to a tolerance: samples that lie nearer than the curve rises between them jump up and down.

@@ -1,6 +1,7 @@
 #pragma once
 // The mesh of the shaft beside the one in use: every segment cut into shorter elements.
 
+#include "study/bars/film_mesh.hpp"
 #include "whirl/system/options.hpp"
 #include "whirl/system/train.hpp"
 
@@ -12,6 +13,13 @@ namespace whirl::study {
 
 /// Whether the machine has a shaft of beams that can be cut: a shaft with couplings cannot.
 [[nodiscard]] bool has_shaft_mesh(const system::Machine& machine);
+
+/// The mesh of with_cut_shaft(train, 2) among those that bars stand on.
+inline const FilmMesh cut_shaft_mesh{Axis::shaft, {1, 1}, 0.5};
+/// Into how many parts a mesh cuts the segments.
+[[nodiscard]] constexpr int parts_of(const FilmMesh& mesh) {
+  return mesh.axis == Axis::shaft ? 2 : 1;
+}
 
 /// The train with every segment of its shaft cut into `parts` equal ones; what stands at nodes stays in its place.
 [[nodiscard]] system::Train with_cut_shaft(system::Train train, int parts);

@@ -36,4 +36,12 @@ void put_margins(io::StudySummary& summary, const std::string& head, double spee
   summary.set(head + "required_margin", here.required, "1", bar(exact || !std::isfinite(most) ? none : required));
 }
 
+std::string margin_verdict_of(const io::StudySummary& summary, const std::string& head) {
+  const auto value = [&](const std::string& name) {
+    const auto at = std::ranges::find(summary.values, head + name, [](const auto& v) { return v.first; });
+    return at == summary.values.end() ? io::Quantity{} : at->second;
+  };
+  return margin_verdict(value("amplification_factor"), value("separation_margin"), value("required_margin"));
+}
+
 }  // namespace whirl::study

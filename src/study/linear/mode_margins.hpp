@@ -16,4 +16,7 @@ namespace whirl::study {
 void put_margins(io::StudySummary& summary, const std::string& head, double speed, double speed_error, double decrement,
                  double decrement_error, const std::optional<deck::Range>& operating);
 
+/// margin_verdict() of what put_margins() put.
+[[nodiscard]] std::string margin_verdict_of(const io::StudySummary& summary, const std::string& head);
+
 }  // namespace whirl::study

@@ -9,8 +9,6 @@
 namespace whirl::study {
 namespace {
 
-constexpr double damped = 2.5;
-
 double bar_of(const io::Quantity& q) {
   const auto at = q.more.find("uncertainty");
   return at != q.more.end() && std::isfinite(at->second) ? at->second : 0;
@@ -51,16 +49,11 @@ io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::st
   return out;
 }
 
-std::string verdict_of(const io::PeakEntry& peak) {
-  const double factor = peak.amplification_factor.value, bar = bar_of(peak.amplification_factor);
-  if (!std::isfinite(factor)) return {};
-  if (factor + bar < damped) return "damped, not critical";
-  if (factor - bar < damped) return "undetermined";
-  if (peak.required_margin.unit.empty()) return {};
-  const double missing = peak.required_margin.value - peak.separation_margin.value,
-               bars = bar_of(peak.required_margin) + bar_of(peak.separation_margin);
-  if (missing != 0 && std::abs(missing) <= bars) return "undetermined";
-  return missing > 0 ? "too near" : "far enough";
+void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit) {
+  const double low = deck::from_si(operating.from, unit), high = deck::from_si(operating.to, unit);
+  if (low == high) return summary.set("operating_speed", low, unit);
+  summary.set("operating_range.from", low, unit);
+  summary.set("operating_range.to", high, unit);
 }
 
 void warn_of_amplification(io::StudySummary& summary) {

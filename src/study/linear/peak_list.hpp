@@ -32,10 +32,8 @@ struct PeakValue {
 [[nodiscard]] io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::string& unit,
                                      const std::optional<deck::Range>& operating);
 
-/// Whether a peak keeps its distance from the operating range: "damped, not critical" (API 684: amplification below
-/// 2.5), "too near", "far enough"; "undetermined" where a bar contains the limit. Empty without an operating range, and
-/// where there is no amplification factor.
-[[nodiscard]] std::string verdict_of(const io::PeakEntry& peak);
+/// Puts "operating_speed", or "operating_range.from" and ".to" where they differ.
+void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit);
 
 /// Warns of amplification factors of peaks and critical speeds above high_amplification, in one sentence.
 void warn_of_amplification(io::StudySummary& summary);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "study/bars/summary_bars.hpp"
 
@@ -40,7 +41,7 @@ public:
   [[nodiscard]] Top of(const NamedPeak& peak, const MeshResponse& r) const {
     const std::size_t k = of(peak.speed);
     std::array<double, 3> f{};
-    for (std::size_t i = 0; i < 3; ++i) f[i] = r.height[3 * k + i][peak.node];
+    for (std::size_t i = 0; i < 3; ++i) f[i] = r.height[3 * k + i][peak.place];
     return top_of(centres_[k], f);
   }
 
@@ -65,6 +66,7 @@ double location_of(const std::vector<NamedPeak>& peaks, const std::string& name,
   }
   return std::abs(value) * (name.ends_with("speed")                  ? p->errors.speed
                             : name.ends_with("amplification_factor") ? p->errors.factor
+                            : name.ends_with(prominence)             ? height_tolerance * p->height / value
                                                                      : p->errors.height);
 }
 
@@ -82,18 +84,21 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
                        std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve) {
   if (meshes.empty()) return put_locations(summary, peaks);
   const Tops tops(peaks);
-  const std::vector<double> speeds = tops.speeds();
+  std::vector<double> speeds = tops.speeds();
+  for (const NamedPeak& p : peaks) speeds.insert(speeds.end(), p.saddles.begin(), p.saddles.end());
   SummaryBars bars(summary, law);
   // Without the response about the peaks on this mesh all bars are unknown; the response itself stays.
   MeshResponse here;
-  const bool known = has_answer([&] { here = solve({1, 1}, speeds, "bars"); });
+  const bool known = has_answer([&] { here = solve({}, speeds, "bars"); });
   if (!known) summary.warnings.emplace_back("the response beside its peaks could not be computed: no error bars");
   for (std::size_t i = 0; i < meshes.size(); ++i)
     bars.add(meshes[i].axis, meshes[i].spacing, [&](io::StudySummary& there) {
       if (!known) return;
-      const MeshResponse moved = solve(meshes[i].factor, speeds, fmt::format("bars {}", i + 1));
+      const MeshResponse moved = solve(meshes[i], speeds, fmt::format("bars {}", i + 1));
       there = moved.operating;
+      std::size_t saddle = tops.speeds().size();
       for (NamedPeak& p : peaks) {
+        const std::size_t first = std::exchange(saddle, saddle + p.saddles.size());
         const Top a = tops.of(p, here), b = tops.of(p, moved);
         if (!(b.quality > 0)) {
           p.vanishes = true;
@@ -101,6 +106,9 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
         }
         put(there, p.head, p.speed + b.speed - a.speed, p.height + b.height - a.height,
             p.amplification * b.quality / a.quality);
+        double lowest = 0;
+        for (std::size_t k = first; k < saddle; ++k) lowest = std::max(lowest, moved.height[k][p.place]);
+        if (saddle > first) there.set(p.head + prominence, p.height + b.height - a.height - lowest, "m");
       }
     });
   bars.write([&](const std::string& name, double value) { return location_of(peaks, name, value); });

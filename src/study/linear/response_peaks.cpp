@@ -160,21 +160,21 @@ Peak peak_at(const ResponseCurve& curve, std::size_t top) {
   return p;
 }
 
-Peak peak_between(const ResponseCurve& curve, std::size_t top) {
-  Peak p = peak_at(curve, top);
-  p.errors = {};
-  const double foot = foot_of(curve, top);
-  if (!std::isfinite(p.height) || !std::isfinite(foot) || top == 0 || top + 1 >= curve.speed.size()) return p;
-  // Newton's form of the parabola of g = 1/f^2 through the top and its neighbours.
-  const auto g = [&](std::size_t k) { return 1 / (curve.height[k] * curve.height[k]); };
-  const auto s = [&](std::size_t k) { return curve.speed[k]; };
-  const double first = (g(top) - g(top - 1)) / (s(top) - s(top - 1)),
-               second = ((g(top + 1) - g(top)) / (s(top + 1) - s(top)) - first) / (s(top + 1) - s(top - 1)),
-               least = g(top - 1) + first * (foot - s(top - 1)) + second * (foot - s(top - 1)) * (foot - s(top));
-  if (!(least > 0) || !(least <= g(top))) return p;
-  p.speed = foot;
-  p.height = 1 / std::sqrt(least);
-  return p;
+std::vector<double> saddles_of(const ResponseCurve& curve, std::size_t top) {
+  std::vector<std::size_t> lowest{top, top};
+  for (std::size_t k = top; k-- > 0 && curve.height[k] <= curve.height[top];)
+    if (curve.height[k] < curve.height[lowest[0]]) lowest[0] = k;
+  for (std::size_t k = top + 1; k < curve.height.size() && curve.height[k] <= curve.height[top]; ++k)
+    if (curve.height[k] < curve.height[lowest[1]]) lowest[1] = k;
+  const std::vector<double> saddles{curve.speed[lowest[0]], curve.speed[lowest[1]]};
+  return saddle_height(curve, saddles) < (1 - little_prominence) * curve.height[top] ? std::vector<double>{} : saddles;
+}
+
+double saddle_height(const ResponseCurve& curve, const std::vector<double>& saddles) {
+  double higher = 0;
+  for (std::size_t k = 0; k < curve.speed.size(); ++k)
+    if (std::ranges::find(saddles, curve.speed[k]) != saddles.end()) higher = std::max(higher, curve.height[k]);
+  return higher;
 }
 
 }  // namespace whirl::study

@@ -13,6 +13,8 @@ inline constexpr double width_tolerance = 1e-3;  ///< of the width of a peak, fo
 /// Of its height that a peak stands above the curve on either side: less may be what the equilibria leave of their
 /// equations, and rounding.
 inline constexpr double height_tolerance = 1e-6;
+/// Of its height: a peak that stands out more is one on any mesh that serves at all.
+inline constexpr double little_prominence = 0.1;
 /// Of the speed: nearer speeds say nothing new of a place that is known to peak_tolerance.
 inline constexpr double least_step = 0.1 * peak_tolerance;
 
@@ -40,9 +42,12 @@ struct Peak {
   std::string no_factor = {};  ///< why it has no amplification factor
 };
 [[nodiscard]] Peak peak_at(const ResponseCurve& curve, std::size_t top);
-/// The same of a curve that was not refined about this top: speed and height by the parabola of 1/f^2 through the
-/// samples about it, errors unknown.
-[[nodiscard]] Peak peak_between(const ResponseCurve& curve, std::size_t top);
+/// The lowest samples on either side of a top before the curve rises above it or ends, if it stands above the higher
+/// one of them by less than little_prominence; else nothing.
+[[nodiscard]] std::vector<double> saddles_of(const ResponseCurve& curve, std::size_t top);
+
+/// The height of the higher saddle.
+[[nodiscard]] double saddle_height(const ResponseCurve& curve, const std::vector<double>& saddles);
 
 /// Speeds [rad/s] that settle the place of a top; none if it is settled. `pass` counts the attempts.
 void ask_for_top(const ResponseCurve& curve, std::size_t top, int pass, std::vector<double>& speeds);

@@ -4,9 +4,18 @@
 #include <limits>
 
 namespace whirl::study {
+namespace {
+
+constexpr double damped = 2.5;
+
+double bar_of(const io::Quantity& q) {
+  const auto at = q.more.find("uncertainty");
+  return at != q.more.end() && std::isfinite(at->second) ? at->second : 0;
+}
+
+}  // namespace
 
 Separation separation(double speed, double amplification, double from, double to) {
-  constexpr double damped = 2.5;
   const bool above = speed > to || (speed >= from && to - speed < speed - from);
   Separation s;
   if (speed < from) s.actual = (from - speed) / from;
@@ -16,6 +25,18 @@ Separation separation(double speed, double amplification, double from, double to
   else if (amplification >= damped)
     s.required = (above ? 0.10 : 0.0) + 0.17 * (1 - 1 / (amplification - 1.5));
   return s;
+}
+
+std::string margin_verdict(const io::Quantity& amplification_factor, const io::Quantity& actual,
+                           const io::Quantity& required) {
+  const double factor = amplification_factor.value, bar = bar_of(amplification_factor);
+  if (!std::isfinite(factor)) return {};
+  if (factor + bar < damped) return "damped, not critical";
+  if (factor - bar < damped) return "undetermined";
+  if (required.unit.empty() || !std::isfinite(required.value)) return {};
+  const double missing = required.value - actual.value, bars = bar_of(required) + bar_of(actual);
+  if (missing != 0 && std::abs(missing) <= bars) return "undetermined";
+  return missing > 0 ? "too near" : "far enough";
 }
 
 }  // namespace whirl::study

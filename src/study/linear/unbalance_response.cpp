@@ -11,6 +11,7 @@
 #include <set>
 
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
@@ -22,6 +23,7 @@
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/thickness.hpp"
+#include "whirl/rotor/divide.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/newton/frequency_response.hpp"
 
@@ -51,14 +53,18 @@ double film_left(const system::Support& s, const system::JournalState& at, const
 
 class Responder {
 public:
-  /// `cells`: of the films over those of the deck.
+  /// `nodes` of the deck's shaft, of whatever mesh.
   Responder(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options,
-            std::vector<int> nodes, const std::array<double, 2>& cells = {1, 1})
-      : system_(layout.space, with_film_mesh(system::train_of(context.machine, options.unbalance), cells),
+            std::vector<int> nodes, const FilmMesh& mesh = {})
+      : system_(layout.space,
+                with_cut_shaft(with_film_mesh(system::train_of(context.machine, options.unbalance), mesh.factor),
+                               parts_of(mesh)),
                 options.range.from),
         walker_(system_),
         solver_(system_),
-        nodes_(std::move(nodes)) {}
+        nodes_(std::move(nodes)) {
+    for (int& node : nodes_) node = rotor::node_after(node, parts_of(mesh));
+  }
 
   Response at(double speed) {
     Vec x = walker_.at(speed);
@@ -143,14 +149,54 @@ const Response& nearest(const std::vector<Response>& curve, double speed) {
   return *std::ranges::min_element(curve, {}, [&](const Response& r) { return std::abs(r.speed - speed); });
 }
 
+// A place of the response: shaft nodes, then journals in their bearings.
+struct Place {
+  std::string label, head;  // in the list of peaks, and of its values
+  Places of;
+  std::size_t at;
+};
+
+std::vector<Place> places_of(const std::vector<int>& nodes, const std::vector<std::string>& bearings) {
+  std::vector<Place> out;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    out.push_back({fmt::format("node {}", nodes[k]), fmt::format("node.{}", nodes[k]), &Response::nodes, k});
+  for (std::size_t b = 0; b < bearings.size(); ++b)
+    out.push_back({bearings[b] + ", journal", "bearing." + bearings[b], &Response::bearings, b});
+  return out;
+}
+
+// A peak of the list with the numbers that its bars stand on.
+struct Listed {
+  io::PeakEntry entry;
+  NamedPeak named;
+};
+
 // The peaks of a curve by falling height; those without a height are the highest.
-std::vector<Peak> peaks_of(const ResponseCurve& curve, Peak (*at)(const ResponseCurve&, std::size_t)) {
-  std::vector<Peak> own;
-  for (const std::size_t k : curve.tops()) own.push_back(at(curve, k));
-  std::ranges::stable_sort(own, std::greater{}, [](const Peak& p) {
-    return std::isfinite(p.height) ? p.height : std::numeric_limits<double>::infinity();
+std::vector<std::size_t> tops_of(const ResponseCurve& curve) {
+  std::vector<std::size_t> tops = curve.tops();
+  std::ranges::stable_sort(tops, std::greater{}, [&](std::size_t k) {
+    const double height = peak_at(curve, k).height;
+    return std::isfinite(height) ? height : std::numeric_limits<double>::infinity();
   });
-  return own;
+  return tops;
+}
+
+// Whether there is a peak at all; where that is open its margin decides nothing.
+void judge(const io::StudySummary& summary, Listed& peak) {
+  io::PeakEntry& entry = peak.entry;
+  entry.verdict = margin_verdict(entry.amplification_factor, entry.separation_margin, entry.required_margin);
+  std::string doubt;
+  if (peak.named.vanishes) doubt = "on another mesh the response has no peak there";
+  for (const auto& [name, q] : summary.values) {
+    if (name != peak.named.head + prominence || !q.more.contains("uncertainty")) continue;
+    const double bar = q.more.at("uncertainty");
+    if (doubt.empty() && !(q.value > bar))
+      doubt = fmt::format("it stands {:.2g} um above the response beside it, with a bar of {}", 1e6 * q.value,
+                          std::isfinite(bar) ? fmt::format("{:.2g} um", 1e6 * bar) : "unknown size");
+  }
+  if (doubt.empty()) return;
+  entry.notes.push_back("undetermined: " + doubt);
+  entry.verdict = "undetermined";
 }
 
 // Equilibria know of no loss factor: of such shafts nothing is asked.
@@ -169,13 +215,6 @@ void take_bars(const io::StudySummary& summary, const std::string& head, io::Pea
   for (const auto& [name, q] : summary.values)
     for (const PeakValue& v : peak_values())
       if (name == head + v.name) entry.*v.member = q;
-}
-
-void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit) {
-  const double low = deck::from_si(operating.from, unit), high = deck::from_si(operating.to, unit);
-  if (low == high) return summary.set("operating_speed", low, unit);
-  summary.set("operating_range.from", low, unit);
-  summary.set("operating_range.to", high, unit);
 }
 
 // Marks the speeds at which the equilibrium is unstable: there nothing settles into the linear motion.
@@ -207,7 +246,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   Responder machine(context, layout, options, nodes);
   auto& results = context.results;
   auto& summary = results.summary();
-  const std::size_t n_bearings = context.machine.bearings.size();
+  const auto names = names_of_bearings(context.machine);
+  const std::vector<Place> places = places_of(nodes, names);
   // Responses at several speeds, shared between the groups of ranks.
   std::size_t ready = 0, calls = 0;
   Pieces pieces(results, context.resume);
@@ -220,7 +260,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
     };
     std::vector<Response> out;
     for (const auto& flat : distribute(layout, speeds.size(), compute, pieces, piece, which.trail()))
-      out.push_back(unpack(flat, nodes.size(), n_bearings));
+      out.push_back(unpack(flat, nodes.size(), names.size()));
     return out;
   };
   const auto at_speeds = [&](const std::vector<double>& speeds) {
@@ -231,7 +271,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
     grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
   std::vector<Response> curve = at_speeds(grid);
 
-  // Speeds added around the peaks of each node until the parabola of 1/f^2 settles the speed to 1e-5.
+  // Speeds added around the peaks of each place until the parabola of 1/f^2 settles the speed to 1e-5.
   const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
   std::sort(curve.begin(), curve.end(), by_speed);
   const auto add = [&](std::vector<double> speeds) {
@@ -240,12 +280,12 @@ StudyResult UnbalanceResponse::run(Context& context) {
     std::sort(curve.begin(), curve.end(), by_speed);
     return !speeds.empty();
   };
-  // Until no top of any node asks for more.
+  // Until no top of any place asks for more.
   const auto settle = [&](int passes, const auto& ask) {
     for (int pass = 0; pass < passes; ++pass) {
       std::vector<double> speeds;
-      for (std::size_t node = 0; node < nodes.size(); ++node) {
-        const ResponseCurve of = curve_at(curve, &Response::nodes, node);
+      for (const Place& place : places) {
+        const ResponseCurve of = curve_at(curve, place.of, place.at);
         for (const std::size_t k : of.tops()) ask(of, k, pass, speeds);
       }
       if (speeds.empty() || !add(std::move(speeds))) return;
@@ -277,47 +317,50 @@ StudyResult UnbalanceResponse::run(Context& context) {
     for (const PeakValue& v : peak_values())
       if (const io::Quantity& q = entry.*v.member; !q.unit.empty()) to.set(head + v.name, q.value, q.unit);
   };
-  const system::ShownPlaces places = machine.places();
-  const auto marked = [&](io::PeakEntry entry, double speed) {
-    if (stable.known()) entry.stability = StableSpeeds::word(stable.at(nearest(curve, speed).speed));
-    if (const std::string bearing = touched(nearest(curve, speed), places); !bearing.empty())
-      entry.notes.push_back("no answer: the motion leaves bearing " + bearing + " too little film");
-    return entry;
-  };
-  std::vector<io::PeakEntry> entries;
-  std::vector<std::string> heads;  // of the values of each
-  std::vector<NamedPeak> named;
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
-    const std::vector<Peak> own = peaks_of(curve_at(curve, &Response::nodes, node), peak_at);
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
-      put_peak(summary, head, own[k].speed, own[k].height, own[k].amplification);
-      entries.push_back(marked(entry_of(fmt::format("node {}", nodes[node]), own[k], unit, operating), own[k].speed));
-      heads.push_back(head);
-      if (!std::isfinite(own[k].height))
+  const system::ShownPlaces shown = machine.places();
+  std::vector<Listed> peaks;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const ResponseCurve of = curve_at(curve, places[p].of, places[p].at);
+    int number = 0;
+    for (const std::size_t k : tops_of(of)) {
+      const Peak peak = peak_at(of, k);
+      const std::string head = fmt::format("{}.peak.{}.", places[p].head, ++number);
+      put_peak(summary, head, peak.speed, peak.height, peak.amplification);
+      const std::vector<double> saddles = saddles_of(of, k);
+      if (std::isfinite(peak.height) && !saddles.empty())
+        summary.set(head + prominence, peak.height - saddle_height(of, saddles), "m");
+      io::PeakEntry entry = entry_of(places[p].label, peak, unit, operating);
+      if (stable.known()) entry.stability = StableSpeeds::word(stable.at(peak.speed));
+      if (const std::string bearing = touched(nearest(curve, peak.speed), shown); !bearing.empty())
+        entry.notes.push_back("no answer: the motion leaves bearing " + bearing + " too little film");
+      peaks.push_back({entry, {head, p, peak.speed, peak.height, peak.amplification, peak.errors, saddles}});
+      if (!std::isfinite(peak.height))
         summary.warnings.push_back(
-            fmt::format("node {}: the peak near {:.6g} {} has no height: it grows as the speed comes nearer, as an "
+            fmt::format("{}: the peak near {:.6g} {} has no height: it grows as the speed comes nearer, as an "
                         "undamped resonance does",
-                        nodes[node], deck::from_si(own[k].speed, unit), unit));
-      named.push_back({head, node, own[k].speed, own[k].height, own[k].amplification, own[k].errors});
-      // The first node named in the deck is the one the report speaks of; its highest peak comes first.
-      if (node == 0) {
-        named.push_back(named.back());
-        named.back().head = fmt::format("peak.{}.", k + 1);
-      }
+                        places[p].label, deck::from_si(peak.speed, unit), unit));
     }
   }
-  for (const NamedPeak& p : named)
-    if (p.head.starts_with("peak.")) {
-      summary.set(p.head + "node", nodes.front(), "1");
-      put_peak(summary, p.head, p.speed, p.height, p.amplification);
-    }
-  const auto names = names_of_bearings(context.machine);
+  // The first node named in the deck is the one the report speaks of; its highest peak comes first.
+  std::vector<NamedPeak> named;
+  int number = 0;
+  for (const Listed& p : peaks) {
+    named.push_back(p.named);
+    if (p.named.place > 0) continue;
+    NamedPeak first = p.named;
+    first.head = fmt::format("peak.{}.", ++number);
+    first.saddles.clear();
+    summary.set(first.head + "node", nodes.front(), "1");
+    put_peak(summary, first.head, first.speed, first.height, first.amplification);
+    named.push_back(std::move(first));
+  }
   if (operating_speed) put_operating(names, nodes, at_speeds({operating_speed->value}).front(), summary);
-  put_response_bars(summary, film_meshes(context.machine, context.layout), law_of(context.machine), named, put_peak,
-                    [&](const std::array<double, 2>& cells, std::vector<double> at, const std::string& piece) {
+  std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  if (has_shaft_mesh(context.machine)) meshes.push_back(cut_shaft_mesh);
+  put_response_bars(summary, meshes, law_of(context.machine), named, put_peak,
+                    [&](const FilmMesh& mesh, std::vector<double> at, const std::string& piece) {
                       std::optional<Responder> other;
-                      if (cells != std::array<double, 2>{1, 1}) other.emplace(context, layout, options, nodes, cells);
+                      if (mesh.spacing != 1) other.emplace(context, layout, options, nodes, mesh);
                       if (operating_speed) at.push_back(operating_speed->value);
                       std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
                       MeshResponse out;
@@ -327,24 +370,20 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       }
                       for (const Response& r : all) {
                         out.height.emplace_back();
-                        for (const NodeMotion& m : r.nodes) out.height.back().push_back(m.semi_major());
+                        for (const Place& place : places)
+                          out.height.back().push_back((r.*place.of)[place.at].semi_major());
                       }
                       return out;
                     });
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    take_bars(summary, heads[k], entries[k]);
-    const bool vanishes = std::ranges::any_of(named, [&](const auto& p) { return p.head == heads[k] && p.vanishes; });
-    if (vanishes) entries[k].notes.emplace_back("undetermined: on another film mesh the response has no peak there");
+  for (Listed& p : peaks) {
+    take_bars(summary, p.named.head, p.entry);
+    p.named.vanishes = std::ranges::any_of(named, [&](const auto& n) { return n.head == p.named.head && n.vanishes; });
+    judge(summary, p);
+    summary.peaks.push_back(p.entry);
   }
-  for (std::size_t b = 0; b < names.size(); ++b) {
-    for (const Peak& p : peaks_of(curve_at(curve, &Response::bearings, b), peak_between))
-      entries.push_back(marked(entry_of(names[b] + ", journal", p, unit, operating), p.speed));
-  }
-  for (io::PeakEntry& p : entries) p.verdict = verdict_of(p);
-  summary.peaks = std::move(entries);
 
   auto& group = results.group();
-  put_films(group, summary, places, curve, unit);
+  put_films(group, summary, shown, curve, unit);
   put_stability(group, summary, curve, stable, operating_speed, unit);
   warn_of_amplification(summary);
   if (operating) put_operating_range(summary, *operating, unit);

@@ -1,6 +1,10 @@
 #pragma once
 // How far a critical speed must stay from where a machine runs.
 
+#include <string>
+
+#include "whirl/io/summary.hpp"
+
 namespace whirl::study {
 
 /// Separation margins, as fractions of the border of the operating range that the critical speed is nearest to.
@@ -17,5 +21,11 @@ struct Separation {
 /// Inside the range the actual margin is zero and the required one that of the nearer border. Any one unit of speed.
 /// Source: API 617 (separation of lateral critical speeds); API 684 (2005), 2.5.
 [[nodiscard]] Separation separation(double critical_speed, double amplification_factor, double from, double to);
+
+/// Whether a critical speed or a peak keeps its distance, by its amplification factor and its margins with their bars:
+/// "damped, not critical" (API 684: amplification below 2.5), "too near", "far enough"; "undetermined" where a bar
+/// contains the limit. Empty without margins (no unit), and where there is no amplification factor.
+[[nodiscard]] std::string margin_verdict(const io::Quantity& amplification_factor, const io::Quantity& actual,
+                                         const io::Quantity& required);
 
 }  // namespace whirl::study
