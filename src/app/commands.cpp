@@ -65,9 +65,15 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   study::RunOptions options{directory, WHIRL_VERSION, {}, {}, request.resume};
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
+  // With a service speed what is known there comes before the answers of the studies, which need not wait to be seen
+  // in the files.
+  const bool opens_with_service = deck.machine.service_speed.has_value();
+  std::string answers;
   options.ended = [&](const io::StudySummary& s) {
     if (request.progress) fmt::print(stderr, "\r\033[K");
-    print(outcome_text(s));
+    const std::string answer = answer_text(s);
+    print(headline_text(s) + (opens_with_service ? "" : answer));
+    if (opens_with_service && !answer.empty()) answers += fmt::format("{}:\n{}", s.name, answer);
   };
   std::string text = changes_text(deck.changes);
   for (const std::string& line : study::unusual(deck)) text += fmt::format("warning: {}\n", line);
@@ -80,9 +86,13 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   } catch (const core::InputError&) {
     held.abandon();
     throw;
+  } catch (...) {
+    print(answers);
+    throw;
   }
   core::agree(comm, [&] {
-    if (core::rank_of(comm) == 0) text += service_text(io::Summary::read(fs::path(directory) / "summary.json").service);
+    if (core::rank_of(comm) == 0)
+      text += service_text(io::Summary::read(fs::path(directory) / "summary.json").service) + answers;
   });
   for (const auto& o : core::Session::options_in_force())
     if (o.source != "command line")

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cells.hpp"
 #include "whirl/io/summary.hpp"
 
 namespace whirl::app {
@@ -13,10 +14,13 @@ namespace whirl::app {
 /// these. Lengths in um (mm from 10 mm on), forces in kN, pressures in MPa, margins in percent.
 [[nodiscard]] std::string highlights(const io::StudySummary& study);
 
-/// "5021.4 +- 6.9 rpm": two digits of the uncertainty, seven of the value at most; the unit 1 is not written.
-[[nodiscard]] std::string with_uncertainty(double value, double uncertainty, const std::string& unit);
-
-/// A value with its bar in the unit that a person reads: "23.2 +- 0.4 um", "61.3 degC".
-[[nodiscard]] std::string in_usual_unit(const io::Quantity& q);
+// By kinds of studies; `v` has the values of the study.
+[[nodiscard]] std::string of_modes(const io::StudySummary& s, const Values& v);
+[[nodiscard]] std::string of_response(const io::StudySummary& s);
+[[nodiscard]] std::string of_transfers(const io::StudySummary& s, const Values& v);
+[[nodiscard]] std::string of_equilibria(const io::StudySummary& s, const Values& v);
+[[nodiscard]] std::string of_cycles(const io::StudySummary& s, const Values& v);
+[[nodiscard]] std::string of_motion(const io::StudySummary& s, const Values& v);
+[[nodiscard]] std::string of_run_up(const io::StudySummary& s, const Values& v);
 
 }  // namespace whirl::app

@@ -28,12 +28,17 @@ std::string in_words(const std::vector<io::StabilityRange>& ranges) {
 
 }  // namespace
 
-std::string outcome_text(const io::StudySummary& s) {
+std::string headline_text(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
   if (!s.layout.empty()) text += fmt::format("  {}\n", s.layout);
   if (!s.stability.empty()) text += fmt::format("  {}{}\n", s.stability, in_words(s.ranges));
   for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
+  return text;
+}
+
+std::string answer_text(const io::StudySummary& s) {
+  std::string text;
   for (const io::Bifurcation& b : s.bifurcations) {
     text += fmt::format("  {} at {} {}{}{}{}\n", io::name_of(b.type), b.parameter,
                         with_uncertainty(b.value, b.uncertainty, b.unit), b.criticality.empty() ? "" : ", ",

@@ -7,10 +7,12 @@
 
 namespace whirl::app {
 
-/// A line on a study (how it ended, points, time). Below it one per bifurcation with what it means, per point of
-/// codimension two and per stretch that could not be resolved, and then what the study was asked for. Numbers have the
-/// digits that their uncertainty leaves them.
-[[nodiscard]] std::string outcome_text(const io::StudySummary& study);
+/// A line on a study (how it ended, points, time), its verdict and its warnings.
+[[nodiscard]] std::string headline_text(const io::StudySummary& study);
+
+/// A line for each bifurcation with what it means, for each point of codimension two and for each stretch that could
+/// not be resolved, and then what the study was asked for. Numbers have the digits that their uncertainty leaves them.
+[[nodiscard]] std::string answer_text(const io::StudySummary& study);
 
 /// What is known of the machine at its service speed, a line each; empty if it has none.
 [[nodiscard]] std::string service_text(const io::Service& service);

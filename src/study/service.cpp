@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 #include <optional>
@@ -43,6 +44,37 @@ std::optional<std::string> between(const std::string& name, const std::string& h
   return name.substr(head.size(), name.size() - head.size() - tail.size());
 }
 
+// A value between the two computed speeds about a place, in a straight line; they are one where that was computed.
+struct Interpolated {
+  double value, below, above;
+};
+
+// `slack` beyond either end: what a revolution of a run-up leaves to the ends of its range.
+std::optional<Interpolated> at_speed(const std::vector<double>& speeds, const std::function<double(std::size_t)>& value,
+                                     double speed, double slack) {
+  std::optional<std::size_t> below, above;
+  for (std::size_t k = 0; k < speeds.size(); ++k) {
+    if (!std::isfinite(value(k))) continue;
+    if (speeds[k] <= speed * (1 + same) && (!below || speeds[k] > speeds[*below])) below = k;
+    if (speeds[k] >= speed * (1 - same) && (!above || speeds[k] < speeds[*above])) above = k;
+  }
+  if (!below && above && speeds[*above] - speed <= slack) below = above;
+  if (!above && below && speed - speeds[*below] <= slack) above = below;
+  if (!below || !above) return std::nullopt;
+  const double a = speeds[*below], b = speeds[*above], w = b > a ? (speed - a) / (b - a) : 0;
+  return Interpolated{(1 - w) * value(*below) + w * value(*above), a, b};
+}
+
+std::string between_words(const Interpolated& at, const std::string& unit) {
+  if (at.above - at.below <= same * at.above) return {};
+  return fmt::format("between {:.6g} and {:.6g} {}, which were computed", deck::from_si(at.below, unit),
+                     deck::from_si(at.above, unit), unit);
+}
+
+std::string joined(const std::string& a, const std::string& b) {
+  return a + (a.empty() || b.empty() ? "" : ", ") + b;
+}
+
 class Collector {
 public:
   Collector(const deck::Quantity& speed, const io::Group& results) : speed_(speed.value), results_(results) {
@@ -55,6 +87,9 @@ public:
     if (s.kind == "unbalance_response") take_response(s);
     if (s.kind == "static") take_static(s);
     if (s.kind == "cycle_branch") take_cycles(s);
+    if (s.kind == "frequency_response") take_transfers(s);
+    if (s.kind == "run_up") take_run_up(s);
+    if (s.kind == "thd") take_thd(s);
   }
 
   io::Service finish() {
@@ -69,7 +104,10 @@ public:
       if (!fact) service_.facts.push_back({what, {}, {}, how, {}});
     };
     missing(film_, "thinnest film", "not known: no `static` at this speed gives one");
-    missing(vibration_, "largest vibration", "not known: no `unbalance_response` gives one at this speed");
+    missing(temperature_, "highest film temperature",
+            "not known: no `thd` and no film with heat gives one at this speed");
+    missing(vibration_, "largest vibration",
+            "not known: no `unbalance_response`, `cycle_branch` or `run_up` gives one at this speed");
     return std::move(service_);
   }
 
@@ -87,6 +125,11 @@ private:
     if (verdict.empty()) return;
     verdicts_.push_back(verdict);
     voters_.push_back(study);
+  }
+
+  // By the number of eigenvalues that grow; negative: some may be missing.
+  void vote_of(std::int64_t count, const std::string& study) {
+    vote(count > 0 ? "unstable" : count == 0 ? "stable" : "undetermined", study);
   }
 
   // The stretch of a branch over the speed in which the machine runs, and its distance from the threshold [rad/s].
@@ -139,10 +182,7 @@ private:
       const double w = here ? 1 : (speed_ - a.speed) / (b.speed - a.speed),
                    decrement = (1 - w) * a.decrement + w * b.decrement;
       const double error = here ? b.error : std::max(a.error, b.error);
-      const std::string unit = s.modes.front().speed_unit;
-      const std::string mark = here ? ""
-                                    : fmt::format("between {:.6g} and {:.6g} {}, which were computed",
-                                                  deck::from_si(a.speed, unit), deck::from_si(b.speed, unit), unit);
+      const std::string mark = here ? "" : between_words({decrement, a.speed, b.speed}, s.modes.front().speed_unit);
       keep(decrement_, {"smallest log decrement", {}, {decrement, "1", bar(error)}, mark, s.name}, false);
       const bool sure = here || (a.decrement > 0) == (b.decrement > 0);
       vote(!sure || std::abs(decrement) <= (std::isfinite(error) ? error : 0) ? "undetermined"
@@ -183,7 +223,7 @@ private:
     if (!at || !is_service(deck::number_to_si(at->value, at->unit))) return;
     std::string mark = "linear response, 0-peak";
     if (const Quantity* count = find(s, "operating_speed.unstable_count")) {
-      vote(count->value > 0 ? "unstable" : count->value == 0 ? "stable" : "undetermined", s.name);
+      vote_of(static_cast<std::int64_t>(count->value), s.name);
       if (count->value > 0) mark += ", about an unstable equilibrium";
     }
     for (const auto& [name, q] : s.values)
@@ -194,6 +234,7 @@ private:
   void take_static(const StudySummary& s) {
     const io::Group* group = group_of(s);
     if (!group || !group->has_attribute("speed") || !is_service(group->real("speed"))) return;
+    if (group->has_attribute("unstable_count")) vote_of(group->integer("unstable_count"), s.name);
     for (const auto& [name, q] : s.values) {
       if (!std::isfinite(q.value)) continue;
       if (const auto b = between(name, "bearing.", ".min_thickness")) {
@@ -208,6 +249,11 @@ private:
     }
   }
 
+  void take_transfers(const StudySummary& s) {
+    const io::Group* group = group_of(s);
+    if (group && group->has_attribute("speed") && is_service(group->real("speed"))) vote(s.stability, s.name);
+  }
+
   // Half of the travel of the journals in a cycle that was asked for at this speed.
   void take_cycles(const StudySummary& s) {
     const io::Group* group = group_of(s);
@@ -220,15 +266,67 @@ private:
       const auto [end, code] = std::from_chars(name.data() + 3, name.data() + place, at);
       if (code != std::errc() || end != name.data() + place || std::abs(at - here) > same * here) continue;
       const std::string journal = name.substr(place + 14, name.rfind('.') - place - 14);
-      keep(cycle_,
-           {"largest vibration",
-            journal,
-            {q.value / 2, "m", bar(bar_of(q) / 2)},
-            "cycle, half of peak to peak in " + name.substr(name.rfind('.') + 1),
-            s.name},
-           true);
+      std::string mark = "cycle, half of peak to peak in " + name.substr(name.rfind('.') + 1);
+      if (const Quantity* largest = find(s, name.substr(0, place) + ".multiplier.modulus")) {
+        const double over = largest->value - 1, bar_of_it = bar_of(*largest);
+        mark += std::abs(over) <= bar_of_it ? ", whose stability is undetermined"
+                : over > 0                  ? ", which is unstable"
+                                            : "";
+      }
+      keep(vibration_, {"largest vibration", journal, {q.value / 2, "m", bar(bar_of(q) / 2)}, mark, s.name}, true);
     }
-    if (cycle_) keep(vibration_, *cycle_, true);
+  }
+
+  // The amplitude with which a run-up passes the speed, or ends just below it.
+  void take_run_up(const StudySummary& s) {
+    const io::Group* group = group_of(s);
+    if (!group || !group->has_group("run_up") || !group->has_attribute("acceleration")) return;
+    const io::Group& table = group->group("run_up");
+    const io::Dataset& speed = table.dataset("speed");
+    std::vector<double> speeds;
+    for (const double v : table.reals("speed")) speeds.push_back(deck::number_to_si(v, speed.unit));
+    if (speeds.size() < 2) return;
+    const double slack = 1.01 * std::abs(speeds[speeds.size() - 1] - speeds[speeds.size() - 2]);
+    for (const char* column : {"amplitude", "node_amplitude"}) {
+      if (!table.has_dataset(column)) continue;
+      const io::Dataset& data = table.dataset(column);
+      const std::vector<double>& all = table.reals(column);
+      const std::size_t places = data.shape.at(1);
+      for (std::size_t p = 0; p < places; ++p) {
+        const auto at = at_speed(
+            speeds, [&](std::size_t k) { return all[k * places + p]; }, speed_, slack);
+        if (!at) continue;
+        const auto in_start = at_speed(
+            speeds, [&](std::size_t k) { return table.reals("start_transient")[k]; }, speed_, slack);
+        const std::string mark =
+            fmt::format("0-peak, run-up at {:.4g} rad/s^2{}", group->real("acceleration"),
+                        in_start && in_start->value > 0 ? ", with the free vibration of its start" : "");
+        keep(vibration_, {"largest vibration", data.labels.at(0).at(p), {at->value, "m"}, mark, s.name}, true);
+      }
+    }
+  }
+
+  // Temperature and pressure of one film with heat: with bars at the last speed of the study.
+  void take_thd(const StudySummary& s) {
+    const io::Group* group = group_of(s);
+    if (!group || !group->has_group("budget") || !group->has_attribute("bearing")) return;
+    const io::Group& table = group->group("budget");
+    const std::vector<double>& speeds = table.reals("parameter");
+    const std::string& bearing = group->text("bearing");
+    if (!speeds.empty() && is_service(speeds.back())) {
+      if (const Quantity* q = find(s, "temperature.maximum"))
+        return keep_film(temperature_, "highest film temperature", bearing, *q, "", s);
+    }
+    const auto at = at_speed(
+        speeds, [&](std::size_t k) { return table.reals("maximum_temperature")[k]; }, speed_, 0);
+    if (at)
+      keep_film(temperature_, "highest film temperature", bearing, {at->value, "K"},
+                joined(between_words(*at, "rad/s"), "without a bar"), s);
+  }
+  void keep_film(std::optional<ServiceFact>& fact, const char* what, const std::string& bearing, const Quantity& q,
+                 const std::string& mark, const StudySummary& s) {
+    const bool cold = s.status != "completed";
+    keep(fact, {what, bearing, q, joined(mark, cold ? "the study did not complete" : ""), s.name}, true);
   }
 
   void put_stability() {
@@ -248,7 +346,7 @@ private:
   io::Service service_;
   std::vector<std::string> verdicts_, voters_;
   std::optional<ServiceFact> threshold_, decrement_, below_, above_, peak_below_, peak_above_, film_, pressure_,
-      temperature_, vibration_, cycle_;
+      temperature_, vibration_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The console ends with what was asked: the numbers of summary.json in units that a person reads.
+"""The console ends with what was asked: the numbers of summary.json in units that a person reads, after what is known at the
+service speed, in tables of at most 100 characters.
 
 outcome.py PROGRAM SOURCE
 """
@@ -22,6 +23,9 @@ def run(deck, name, *words):
     if done.returncode != 0:
         sys.exit(f"{deck}: exit {done.returncode}\n{done.stdout}{done.stderr}")
     studies = json.loads((work / name / "summary.json").read_text())["studies"]
+    wide = [line for line in done.stdout.splitlines() if line.startswith("    ") and len(line) > 100]
+    if wide:
+        failures.append(f"{name}: lines of tables wider than 100:\n" + "\n".join(wide))
     return done.stdout, {s["name"]: {k: v["value"] for k, v in s["values"].items()} for s in studies}
 
 
@@ -76,7 +80,10 @@ if not said or abs(float(said[1]) * math.pi / 30 / s["down"]["threshold"] - 1) >
 # Critical speeds with margins; modes where there are none.
 text, s = run(source / "tests" / "app" / "friswell_591.yaml", "criticals", "--set", "studies=[{modes: {name: m, range: {from: 100 rpm, "
               "to: 3000 rpm}, points: 30, operating: {from: 2500 rpm, to: 2800 rpm}}}, {modes: {name: one, speeds: [500 rpm], count: 11}}]",
-              "rotor.stiffness_damping=1e-5 s")
+              "rotor.stiffness_damping=1e-5 s", "service_speed=2600 rpm")
+told, opens, table = (text.find(words) for words in ("m: completed", "at the service speed, 2600 rpm:", "    critical "))
+if not 0 < told < opens < table or not re.search(r"critical speed above: 2756\.\S* \+- \S+ rpm, 6\.0 % from the service speed", text):
+    failures.append("the service speed opens what was found:\n" + text)
 m = s["m"]
 row(text, "1", [m[f"critical.1.{k}"] for k in ("speed", "mode", "log_decrement", "amplification_factor")]
     + [100 * m["critical.1.separation_margin"], 100 * m["critical.1.required_margin"]])

@@ -78,6 +78,122 @@ TEST(Service, TakesTheFactsOfTheStudies) {
   EXPECT_NE(fact(s, "largest vibration")->mark.find("unbalance_response"), std::string::npos);
 }
 
+io::StudySummary run_up() {
+  io::StudySummary s;
+  s.name = s.kind = "run_up";
+  return s;
+}
+
+// Revolutions at 1000, 1100, ... rpm with amplitudes 10, 20, ... um of a journal and twice that of a node.
+io::Group run_up_groups(int revolutions) {
+  io::Group root;
+  io::Group& group = root.child("run_up");
+  group.set("acceleration", 25.0);
+  std::vector<double> speed, journal, node, start;
+  for (int k = 0; k < revolutions; ++k) {
+    speed.push_back(1000 + 100 * k);
+    journal.push_back(1e-5 * (k + 1));
+    node.push_back(2e-5 * (k + 1));
+    start.push_back(k < 3 ? 1 : 0);
+  }
+  io::Group& table = group.child("run_up");
+  const auto n = static_cast<std::size_t>(revolutions);
+  table.put("speed", speed, "rpm", "");
+  table.put("start_transient", start, "1", "");
+  table.put("amplitude", {n, 1}, journal, "m", "");
+  table.label("amplitude", {{"B1"}});
+  table.put("node_amplitude", {n, 1}, node, "m", "");
+  table.label("node_amplitude", {{"node 7"}});
+  return root;
+}
+
+TEST(Service, TakesTheVibrationOfARunUp) {
+  const auto at_rpm = [](double speed, int revolutions) {
+    return service_of({speed * rpm, "rpm"}, std::vector{run_up()}, run_up_groups(revolutions));
+  };
+  const auto passed = at_rpm(1550, 10);
+  const auto* largest = fact(passed, "largest vibration");
+  EXPECT_NEAR(largest->value.value, 2 * 65e-6, 1e-12);
+  EXPECT_EQ(largest->place, "node 7");
+  EXPECT_EQ(largest->mark, "0-peak, run-up at 25 rad/s^2");
+  // The start counts, and says so; a run that ends a revolution below the speed has reached it, no other.
+  const auto early = at_rpm(1150, 10), just = at_rpm(1950, 10), beyond = at_rpm(2200, 10);
+  EXPECT_NE(fact(early, "largest vibration")->mark.find("free vibration of its start"), std::string::npos);
+  EXPECT_NEAR(fact(just, "largest vibration")->value.value, 200e-6, 1e-12);
+  EXPECT_TRUE(fact(beyond, "largest vibration")->study.empty());
+}
+
+TEST(Service, TakesTheTemperatureOfFilmsWithHeat) {
+  io::StudySummary s;
+  s.name = s.kind = "thd";
+  s.set("temperature.maximum", 350, "K", {{"uncertainty", 2}});
+  io::Group root;
+  io::Group& group = root.child("thd");
+  group.set("bearing", "B2");
+  group.child("budget").put("parameter", {1000 * rpm, 2000 * rpm, 3000 * rpm}, "rad/s", "");
+  group.child("budget").put("maximum_temperature", {320, io::no_value, 350}, "K", "");
+  const auto at_rpm = [&](double speed) { return service_of({speed * rpm, "rpm"}, std::vector{s}, root); };
+  // With its bar at the last speed, without one between two, nothing beyond.
+  const auto last = at_rpm(3000), between = at_rpm(1500), beyond = at_rpm(3100);
+  EXPECT_EQ(fact(last, "highest film temperature")->value.more.at("uncertainty"), 2);
+  EXPECT_EQ(fact(last, "highest film temperature")->place, "B2");
+  EXPECT_NEAR(fact(between, "highest film temperature")->value.value, 327.5, 1e-9);
+  EXPECT_NE(fact(between, "highest film temperature")->mark.find("without a bar"), std::string::npos);
+  EXPECT_TRUE(fact(beyond, "highest film temperature")->study.empty());
+}
+
+TEST(Service, TakesFilmsPressuresAndGrowthOfAStatic) {
+  io::StudySummary s;
+  s.name = s.kind = "static";
+  for (const auto& [name, film] : {std::pair{"A", 30e-6}, {"B", 20e-6}}) {
+    const std::string head = std::string("bearing.") + name + ".";
+    s.set(head + "min_thickness", film, "m", {{"uncertainty", 1e-6}});
+    s.set(head + "minimum_film", 25e-6, "m");
+    s.set(head + "max_pressure", 1e11 * film, "Pa");
+  }
+  io::Group root;
+  root.child("static").set("speed", 3000 * rpm);
+  root.child("static").set("unstable_count", 2);
+  const auto here = service_of({3000 * rpm, "rpm"}, std::vector{s}, root);
+  EXPECT_EQ(fact(here, "stability")->mark, "unstable");
+  EXPECT_EQ(fact(here, "thinnest film")->place, "B");
+  EXPECT_EQ(fact(here, "thinnest film")->mark, "below minimum_film");
+  EXPECT_EQ(fact(here, "highest film pressure")->place, "A");
+  const auto elsewhere = service_of({3100 * rpm, "rpm"}, std::vector{s}, root);
+  EXPECT_NE(fact(elsewhere, "stability")->mark.find("not known"), std::string::npos);
+  EXPECT_TRUE(fact(elsewhere, "thinnest film")->study.empty());
+}
+
+TEST(Service, TakesCyclesAndResponses) {
+  io::StudySummary cycles, response;
+  cycles.name = "balanced";  // its group says that the parameter is the speed
+  cycles.kind = "cycle_branch";
+  cycles.set("at.3600.peak_to_peak.B1.x", 40e-6, "m", {{"uncertainty", 2e-6}});
+  cycles.set("at.3600.peak_to_peak.B1.y", 60e-6, "m");
+  cycles.set("at.3500.peak_to_peak.B1.y", 90e-6, "m");
+  cycles.set("at.3600.multiplier.modulus", 1.01, "1");
+  response.name = response.kind = "unbalance_response";
+  response.set("operating_speed", 3600, "rpm");
+  response.set("operating_speed.unstable_count", 1, "1");
+  response.set("operating.node.4.semi_major", 25e-6, "m");
+  io::PeakEntry near, damped;
+  near.place = damped.place = "node 4";
+  near.speed = {3400, "rpm"};
+  damped.speed = {3590, "rpm"};
+  damped.verdict = "damped, not critical";
+  response.peaks = {near, damped};
+  io::Group root = groups();
+  root.child("balanced").set("parameter_unit", "rpm");
+  const auto both = service_of({3600 * rpm, "rpm"}, std::vector{cycles, response}, root);
+  EXPECT_NEAR(fact(both, "largest vibration")->value.value, 30e-6, 1e-12);
+  EXPECT_NE(fact(both, "largest vibration")->mark.find("which is unstable"), std::string::npos);
+  EXPECT_EQ(fact(both, "peak below")->value.value, 3400);
+  EXPECT_EQ(fact(both, "stability")->mark, "unstable");
+  response.set("operating.node.4.semi_major", 35e-6, "m");
+  const auto larger = service_of({3600 * rpm, "rpm"}, std::vector{cycles, response}, root);
+  EXPECT_EQ(fact(larger, "largest vibration")->place, "node 4");
+}
+
 TEST(Service, StudiesThatDifferDecideNothing) {
   EXPECT_EQ(fact(at(5004, {branch(5000, 10)}), "stability")->mark, "undetermined");
   EXPECT_EQ(fact(at(6000, {branch(5000, 10), modes(6000, -0.1)}), "stability")->mark, "unstable");

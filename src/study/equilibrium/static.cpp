@@ -209,7 +209,11 @@ StudyResult Static::run(Context& context) {
 
   FilmLimit(system.places()).warn(system.observe(at).film_thickness, "at rest", summary);
   put_values(context, system, at, summary);
-  warn_of(growth_at(system, at), fmt::format("at {:.6g} rad/s", options.speed.value),
+  const Growth growth = growth_at(system, at);
+  // Equilibria know of no loss factor.
+  if (context.machine.rotor.loss_factor == 0)
+    group.set("unstable_count", growth.any() || growth.missed == 0 ? growth.count() : -1);
+  warn_of(growth, fmt::format("at {:.6g} rad/s", options.speed.value),
           "The machine does not stay where these results show it", summary);
   // Of all that the summary holds so far: what follows has no mesh.
   put_bars(context, system, options.speed.value, x);

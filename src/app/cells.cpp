@@ -1,0 +1,149 @@
+#include "cells.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::app {
+
+std::string number(std::optional<double> value) {
+  if (!value) return "-";
+  const double size = std::abs(*value);
+  if (size != 0 && (size < 1e-3 || size >= 1e6)) return fmt::format("{:.3e}", *value);
+  const int before = size == 0 ? 1 : static_cast<int>(std::floor(std::log10(size))) + 1;
+  return fmt::format("{:.{}f}", *value, std::max(0, 4 - before));
+}
+
+std::string with_uncertainty(double value, double uncertainty, const std::string& unit) {
+  const std::string tail = unit.empty() || unit == "1" ? "" : " " + unit;
+  if (!std::isfinite(value)) return "unknown";
+  const auto places = [](double x) { return -static_cast<int>(std::floor(std::log10(std::abs(x)))); };
+  const int most = value == 0 ? 6 : 6 + places(value);
+  if (!std::isfinite(uncertainty) || !(uncertainty > 0)) return fmt::format("{:.7g}{}", value, tail);
+  const int size = -places(std::max(std::abs(value), uncertainty));
+  if (size < -4 || size > 6) {
+    const double unit_of_size = std::pow(10, size);
+    return fmt::format("({})e{:+03d}{}", with_uncertainty(value / unit_of_size, uncertainty / unit_of_size, ""), size,
+                       tail);
+  }
+  const int wanted = 1 + places(uncertainty);
+  if (wanted > most) return fmt::format("{:.7g} +- {:.1g}{}", value, uncertainty, tail);
+  const int decimals = std::max(0, wanted);
+  return fmt::format("{:.{}f} +- {:.{}f}{}", value, decimals, uncertainty, decimals, tail);
+}
+
+std::string in_usual_unit(const io::Quantity& q) {
+  const auto bar = q.more.find("uncertainty");
+  const auto shown = [&](double value, double factor, const std::string& unit) {
+    const io::Quantity there{factor * value, unit,
+                             bar == q.more.end()
+                                 ? std::map<std::string, double>{}
+                                 : std::map<std::string, double>{{"uncertainty", factor * bar->second}}};
+    return cell_of(there) + (unit.empty() ? "" : " " + unit);
+  };
+  if (q.unit == "m") return std::abs(q.value) < 0.01 ? shown(q.value, 1e6, "um") : shown(q.value, 1e3, "mm");
+  if (q.unit == "Pa") return shown(q.value, 1e-6, "MPa");
+  if (q.unit == "K") return shown(q.value - 273.15, 1, "degC");
+  return shown(q.value, 1, q.unit == "1" ? "" : q.unit);
+}
+
+std::string cell_of(const io::Quantity& q, double factor) {
+  if (!std::isfinite(q.value)) return "-";
+  const auto bar = q.more.find("uncertainty");
+  const double error = bar == q.more.end() ? io::no_value : factor * bar->second;
+  return std::isfinite(error) && error > 0 ? with_uncertainty(factor * q.value, error, "") : number(factor * q.value);
+}
+
+std::string brief_cell(const io::Quantity& q, double factor) {
+  constexpr double hidden = 2e-3;
+  const auto bar = q.more.find("uncertainty");
+  const bool shown = bar != q.more.end() && bar->second > hidden * std::abs(q.value);
+  return shown || !std::isfinite(q.value) ? cell_of(q, factor) : fmt::format("{:.4g}", factor * q.value);
+}
+
+std::string in_lines(const std::string& text, std::size_t indent) {
+  std::string out, line(indent, ' ');
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t to = std::min(text.find(' ', from), text.size());
+    const std::string word = text.substr(from, to - from);
+    if (line.size() + 1 + word.size() > widest_line && line.find_first_not_of(' ') != std::string::npos) {
+      out += line + "\n";
+      line.assign(indent + 2, ' ');
+    }
+    line += (line.find_first_not_of(' ') == std::string::npos ? "" : " ") + word;
+    from = to + 1;
+  }
+  return out + line + "\n";
+}
+
+Values::Values(const io::StudySummary& s) {
+  for (const auto& [name, quantity] : s.values) all_[name] = quantity;
+}
+
+io::Quantity Values::quantity(const std::string& name) const {
+  const auto at = all_.find(name);
+  return at == all_.end() ? io::Quantity{} : at->second;
+}
+
+std::optional<double> Values::get(const std::string& name) const {
+  const auto at = all_.find(name);
+  if (at == all_.end() || !std::isfinite(at->second.value)) return std::nullopt;
+  return at->second.value;
+}
+
+std::string Values::unit(const std::string& name) const {
+  const auto at = all_.find(name);
+  return at == all_.end() ? "" : at->second.unit;
+}
+
+double Values::bar(const std::string& name) const {
+  const auto at = all_.find(name);
+  if (at == all_.end() || !at->second.more.contains("uncertainty")) return io::no_value;
+  return at->second.more.at("uncertainty");
+}
+
+std::string Values::cell(const std::string& name, double factor) const {
+  const auto at = all_.find(name);
+  return at == all_.end() ? "-" : cell_of(at->second, factor);
+}
+
+std::string Values::brief(const std::string& name, double factor) const {
+  const auto at = all_.find(name);
+  return at == all_.end() ? "-" : brief_cell(at->second, factor);
+}
+
+std::vector<std::string> Values::between(const io::StudySummary& s, const std::string& head, const std::string& tail) {
+  std::vector<std::string> found;
+  for (const auto& [name, quantity] : s.values)
+    if (name.size() > head.size() + tail.size() && name.starts_with(head) && name.ends_with(tail))
+      found.push_back(name.substr(head.size(), name.size() - head.size() - tail.size()));
+  return found;
+}
+
+std::string Grid::text() const {
+  if (rows_.size() < 2) return {};
+  constexpr std::size_t indent = 4, gap = 2;
+  std::vector<std::size_t> width(rows_[0].size()), shown;
+  for (std::size_t c = 0; c < width.size(); ++c) {
+    for (const auto& row : rows_) width[c] = std::max(width[c], row[c].size());
+    const auto filled = [c](const auto& row) { return row[c] != "-" && !row[c].empty(); };
+    if (c > 0 && std::any_of(rows_.begin() + 1, rows_.end(), filled)) shown.push_back(c);
+  }
+  std::string out;
+  auto from = shown.begin();
+  do {
+    auto to = from;
+    std::size_t wide = indent + width[0];
+    while (to != shown.end() && (to == from || wide + gap + width[*to] <= widest_line)) wide += gap + width[*to++];
+    for (const auto& row : rows_) {
+      std::string line = fmt::format("{:{}}{:<{}}", "", indent, row[0], width[0]);
+      for (auto c = from; c != to; ++c) line += fmt::format("{:{}}{:>{}}", "", gap, row[*c], width[*c]);
+      out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    from = to;
+  } while (from != shown.end());
+  return out;
+}
+
+}  // namespace whirl::app

@@ -1,0 +1,158 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+
+#include "highlights.hpp"
+#include "whirl/study/linear/separation.hpp"
+
+namespace whirl::app {
+namespace {
+
+// The modes at the last speed by their numbers; of many all that grow and the lowest of the others.
+std::string last_modes(const io::StudySummary& s, const Values& v) {
+  constexpr std::size_t most = 10;
+  std::vector<io::ModeEntry> last;
+  for (const io::ModeEntry& m : s.modes)
+    if (m.speed == s.modes.back().speed) last.push_back(m);
+  if (last.empty()) return {};
+  const auto extra = [](const io::ModeEntry& m, const char* name) {
+    const auto at = m.more.find(name);
+    return at == m.more.end() ? std::nullopt : std::optional(at->second);
+  };
+  // Of supports without films there is no speed.
+  const bool turns = extra(last.front(), "mode").has_value();
+  Grid grid({turns ? fmt::format("mode at {:.6g} {}", last.front().speed, last.front().speed_unit) : "mode", "[Hz]",
+             "log decrement", "damping ratio", "whirl", ""});
+  std::size_t shown = 0;
+  for (std::size_t k = 0; k < last.size(); ++k) {
+    const io::ModeEntry& m = last[k];
+    const bool grows = m.stability == "unstable" || m.stability == "diverges", moves = m.imag > 0;
+    if (!grows && shown >= most) continue;
+    ++shown;
+    grid.add({fmt::format("{:.0f}", extra(m, "mode").value_or(static_cast<double>(k + 1))),
+              moves ? number(m.imag / (2 * std::numbers::pi)) : "-", moves ? number(m.log_decrement) : "-",
+              number(extra(m, "damping_ratio")), moves && !m.whirl.empty() ? m.whirl : "-",
+              m.stability == "stable" ? ""
+              : moves                 ? m.stability
+                                      : fmt::format("diverges, s = +{:.4g} 1/s", m.real)});
+  }
+  std::string out = grid.text();
+  if (shown < last.size()) out += fmt::format("    {} more stand in summary.json\n", last.size() - shown);
+  if (const auto count = v.get("overdamped"); count && *count > 0)
+    out += fmt::format(
+        "    {:.0f} motions that decay without vibrating (damping ratio above 0.9) stand in the table "
+        "'overdamped'\n",
+        *count);
+  return out;
+}
+
+// What a verdict on a margin says in a row; "-" where the margin is enough.
+std::string mark_of(const std::string& verdict) {
+  return verdict.empty() || verdict == "far enough" ? "-" : verdict == "too near" ? "TOO NEAR" : verdict;
+}
+
+}  // namespace
+
+std::string of_modes(const io::StudySummary& s, const Values& v) {
+  const auto criticals = Values::between(s, "critical.", ".speed");
+  if (criticals.empty()) return last_modes(s, v);
+  const std::string unit = v.unit("critical." + criticals.front() + ".speed");
+  Grid grid({"critical", "[" + unit + "]", "mode", "log decrement", "AF", "margin %", "required %", "mark"});
+  std::vector<std::vector<std::string>> damped;
+  for (const std::string& k : criticals) {
+    const std::string head = "critical." + k + ".";
+    const auto decrement = v.get(head + "log_decrement");
+    std::string verdict =
+        mark_of(study::margin_verdict(v.quantity(head + "amplification_factor"), v.quantity(head + "separation_margin"),
+                                      v.quantity(head + "required_margin")));
+    if (decrement && *decrement < 0) verdict = "UNSTABLE";
+    const bool apart = verdict.starts_with("damped");
+    std::vector<std::string> row{k,
+                                 v.cell(head + "speed"),
+                                 number(v.get(head + "mode")),
+                                 decrement && *decrement == 0 ? "undamped" : v.brief(head + "log_decrement"),
+                                 v.brief(head + "amplification_factor"),
+                                 apart ? "-" : v.brief(head + "separation_margin", 100),
+                                 apart ? "-" : v.brief(head + "required_margin", 100),
+                                 verdict};
+    if (const auto mode = v.get(head + "mode")) row[2] = fmt::format("{:.0f}", *mode);
+    if (apart)
+      damped.push_back(std::move(row));
+    else
+      grid.add(std::move(row));
+  }
+  for (auto& row : damped) grid.add(std::move(row));
+  return grid.text();
+}
+
+namespace {
+
+// What has to be known with a peak, in a few words.
+std::string mark_of(const io::PeakEntry& p) {
+  std::vector<std::string> marks;
+  if (!p.stability.empty() && p.stability != "stable")
+    marks.emplace_back(p.stability == "unstable" ? "UNSTABLE" : "stability?");
+  if (const std::string margin = mark_of(p.verdict); margin != "-") marks.push_back(margin);
+  return marks.empty() ? "-" : fmt::format("{}", fmt::join(marks, "; "));
+}
+
+// The peaks of one place by falling height, and below them what their notes say, each once.
+std::string peaks_at(const std::string& place, const std::vector<io::PeakEntry>& own) {
+  Grid grid(
+      {"peak at " + place, "[" + own.front().speed.unit + "]", "0-peak [um]", "AF", "margin %", "required %", "mark"});
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> notes;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const io::PeakEntry& p = own[k];
+    const bool damped = p.verdict.starts_with("damped");
+    grid.add({fmt::format("{}", k + 1), cell_of(p.speed), cell_of(p.semi_major, 1e6),
+              brief_cell(p.amplification_factor), brief_cell(p.separation_margin, 100),
+              damped ? "-" : brief_cell(p.required_margin, 100), mark_of(p)});
+    for (const std::string& note : p.notes) {
+      const auto known = std::ranges::find(notes, note, [](const auto& n) { return n.first; });
+      if (known == notes.end())
+        notes.push_back({note, {k + 1}});
+      else
+        known->second.push_back(k + 1);
+    }
+  }
+  std::string out = grid.text();
+  for (const auto& [note, peaks] : notes) out += in_lines(fmt::format("{}: {}", fmt::join(peaks, ", "), note), 4);
+  return out;
+}
+
+}  // namespace
+
+// Peaks of the shaft; those of the journals stand in the report.
+std::string of_response(const io::StudySummary& s) {
+  std::string out;
+  std::vector<std::string> places;
+  for (const io::PeakEntry& p : s.peaks)
+    if (p.place.starts_with("node ") && std::ranges::find(places, p.place) == places.end()) places.push_back(p.place);
+  for (const std::string& place : places) {
+    std::vector<io::PeakEntry> own;
+    std::ranges::copy_if(s.peaks, std::back_inserter(own), [&](const io::PeakEntry& p) { return p.place == place; });
+    out += peaks_at(place, own);
+  }
+  return out;
+}
+
+std::string of_transfers(const io::StudySummary& s, const Values& v) {
+  std::string out;
+  for (const auto& [name, q] : s.values)
+    if (name.ends_with(".difference"))
+      out += fmt::format("  {}: at most {:.3g} of the matrix apart, at {} {}\n", name.substr(0, name.size() - 11),
+                         q.value, v.cell(name + "_at"), v.unit(name + "_at"));
+  Grid grid({"largest answer", "amplitude", "unit",
+             fmt::format("at [{}]", s.values.empty() ? "" : v.unit(s.values[1].first))});
+  for (const auto& [name, q] : s.values)
+    if (name.ends_with(".largest"))
+      grid.add({name.substr(0, name.size() - 8), v.cell(name), q.unit, v.cell(name + "_at")});
+  return out + grid.text();
+}
+
+}  // namespace whirl::app
