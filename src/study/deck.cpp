@@ -104,6 +104,17 @@ void describe(deck::Description<Limits>& d) {
         "of all ranks together, above which a study is refused before it begins; its need is estimated from counts");
 }
 
+namespace {
+
+void check_memory(const Study& study, const Deck& deck, std::string_view path, const deck::Report& report) {
+  const double bytes = study.memory(deck.machine, deck.layout);
+  if (bytes > deck.limits.memory)
+    report.fail(path, fmt::format("'{}' needs about {} of memory, and limits.memory is {}", study.name(),
+                                  deck::write_memory(bytes), deck::write_memory(deck.limits.memory)));
+}
+
+}  // namespace
+
 void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
@@ -129,9 +140,7 @@ void describe(deck::Description<Deck>& d) {
                          s.kind()));
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
-      if (const double bytes = s.memory(deck.machine, deck.layout); bytes > deck.limits.memory)
-        r.fail(path, fmt::format("'{}' needs about {} of memory, and limits.memory is {}", s.name(),
-                                 deck::write_memory(bytes), deck::write_memory(deck.limits.memory)));
+      check_memory(s, deck, path, r);
     }
     check_names(deck, r);
   });
@@ -145,8 +154,10 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
   auto d = deck::read<Deck>(root, files, problems);
   // Variants of a deck with errors would only repeat them.
   for (std::size_t i = 0; i < d.studies.size() && problems.empty(); ++i)
-    if (auto* sweep = dynamic_cast<Sweep*>(d.studies[i].get()))
+    if (auto* sweep = dynamic_cast<Sweep*>(d.studies[i].get())) {
       sweep->prepare(root, {d.studies.data(), i}, files, problems);
+      check_memory(*sweep, d, fmt::format("studies.{}.sweep", i + 1), {root, problems});
+    }
   try {
     problems.raise();
   } catch (core::InputError& e) {

@@ -49,6 +49,8 @@ public:
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
+  /// What the dearest study of a variant takes, and what is kept of each variant until the end. One variant at a time.
+  [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
 
   /// Makes and checks the deck of each variant from the tree of the whole one; `before` are the studies before this
