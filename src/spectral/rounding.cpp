@@ -29,6 +29,29 @@ Eigen::MatrixXcd DensePencil::left() const {
   return images.partialPivLu().inverse();
 }
 
+double DensePencil::newton_step(std::size_t k) const {
+  const Eigen::Index n = a_.rows();
+  const std::complex<double> v = values_[k];
+  const Eigen::VectorXcd& x = vectors_[k];
+  Eigen::Index largest = 0;
+  (void)x.cwiseAbs().maxCoeff(&largest);
+  Eigen::MatrixXcd step = Eigen::MatrixXcd::Zero(n + 1, n + 1);
+  step.topLeftCorner(n, n) = a_ - v * b_;
+  step.topRightCorner(n, 1) = -(b_ * x);
+  step(n, largest) = 1;
+  Eigen::VectorXcd right(n + 1);
+  right << v * (b_ * x) - a_ * x, 0;
+  // Rows of one size, so that pivots and errors of each row count alike.
+  const Eigen::VectorXd size = a_.cwiseAbs().rowwise().sum() + std::abs(v) * b_.cwiseAbs().rowwise().sum();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!(size(i) > 0)) continue;
+    step.row(i) /= size(i);
+    right(i) /= size(i);
+  }
+  const double moved = std::abs(step.partialPivLu().solve(right)(n));
+  return std::isfinite(moved) ? moved : std::abs(v);
+}
+
 std::vector<double> DensePencil::rounding() const {
   constexpr double eps = std::numeric_limits<double>::epsilon();
   std::vector<double> out(values_.size(), 0.0);
@@ -47,18 +70,11 @@ std::vector<double> DensePencil::rounding() const {
                         : 1e-11 * largest;
     out[k] = std::isfinite(first) ? std::min(first, most) : most;
   }
-  // A growing eigenvalue must solve each row. The QZ algorithm is backward stable for the norm of the pencil, not row
-  // by row: with stiff springs on light masses it returns eigenvalues whose rows do not agree in the first digit. Their
-  // sign means nothing. Componentwise backward error: Oettli and Prager (1964), Numerische Mathematik 6, 405.
-  constexpr double meaningless = 0.1;
-  for (std::size_t k = 0; k < values_.size(); ++k) {
-    const std::complex<double> v = values_[k];
-    if (!(v.real() > out[k]) || !std::isfinite(std::abs(v))) continue;
-    const Eigen::VectorXd size =
-        a_.cwiseAbs() * vectors_[k].cwiseAbs() + std::abs(v) * (b_.cwiseAbs() * vectors_[k].cwiseAbs());
-    const Eigen::VectorXd left_over = (a_ * vectors_[k] - v * (b_ * vectors_[k])).cwiseAbs();
-    if ((left_over.array() > meaningless * size.array()).any()) out[k] = std::abs(v);
-  }
+  // The QZ algorithm is backward stable for the norm of the pencil, not row by row: with stiff springs on light masses
+  // it returns growing eigenvalues that a step of Newton's method moves by their own size. Their sign means nothing.
+  for (std::size_t k = 0; k < values_.size(); ++k)
+    if (values_[k].real() > out[k] && std::isfinite(std::abs(values_[k])))
+      out[k] = std::max(out[k], std::min(newton_step(k), std::abs(values_[k])));
   return out;
 }
 

@@ -19,8 +19,9 @@ public:
   /// For each eigenvalue added (eps (|A| + |lambda| |B|) |x| + |A x - lambda B x|) |y|/|y* B x| with the left vector y:
   /// what rounding may have done, and what the solver has left. At most the square root of eps times |A| + |lambda| |B|
   /// over |B|, which is what rounding does to a double eigenvalue with one vector. Zero for eigenvalues whose real part
-  /// exceeds 1e-9 of the largest modulus; those it cannot decide. Source: Stewart and Sun (1990), Matrix Perturbation
-  /// Theory, sec. VI.2; Frobenius norms.
+  /// exceeds asked_below of the largest modulus; those it cannot decide. Of one that grows at least what a step of
+  /// Newton's method moves it by. Source: Stewart and Sun (1990), Matrix Perturbation Theory, sec. VI.2; Frobenius
+  /// norms.
   [[nodiscard]] std::vector<double> rounding() const;
 
   /// What Mode tells of the same name, for each eigenvalue added.
@@ -39,6 +40,9 @@ private:
   /// With all eigenvectors X the rows of (B X)^-1 are the left ones, scaled so that y* B x = 1. Of an infinite
   /// eigenvalue B x is zero, and A x takes its place. Empty if not all eigenvalues were added.
   [[nodiscard]] Eigen::MatrixXcd left() const;
+  /// How far a step of Newton's method for (lambda, x), with rows of one size, moves eigenvalue k. Source: Tisseur
+  /// (2001), SIAM J. Matrix Anal. Appl. 22, 1038.
+  [[nodiscard]] double newton_step(std::size_t k) const;
   Eigen::MatrixXd a_, b_;
   std::vector<std::complex<double>> values_;
   std::vector<Eigen::VectorXcd> vectors_;

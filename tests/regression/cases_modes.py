@@ -30,6 +30,7 @@ def divergence(h):
         h.true("modes and static warn", warned(s["m"], "diverges", "+311.3") and warned(s["s"], "diverges", "+311.3"))
         h.close("modes that grow", value(s["m"], "at.100.unstable"), 1, 0)
         h.true("the other plane is stable", [m["stability"] for m in s["m"]["modes"]] == ["diverges", "stable"])
+    symmetric(h)
     # The same spring in the middle of a shaft, whole and reduced; another film speaks for seals.
     shaft = h.source / "tests/cases/friswell_591.yaml"
     seal = "bearings.seal={node: 4, film: {type: linear, stiffness: [-8e6 N/m, 0 N/m, 0 N/m, 1e5 N/m], damping: 500 N s/m}}"
@@ -40,6 +41,23 @@ def divergence(h):
         found.append(s["m"]["modes"][0])
         h.true(f"a shaft diverges, reduction {reduction[:20]}", found[-1]["stability"] == "diverges" and warned(s["s"], "diverges"))
     h.close("after a reduction [1/s]", found[1]["real"], found[0]["real"], 0.02 * found[0]["real"])
+
+
+def symmetric(h):
+    """Modes that rest at half of the places of a shaft: what rounding leaves there hides no growth."""
+    deck = h.source / "tests/cases/symmetric_shaft.yaml"
+    for damping in (100, 1000):
+        s = h.run(deck, f"stage {damping}", [f"bearings.*.film.damping={damping} N s/m"], launcher=[])
+        grows = [m for m in s["m"]["modes"] if m["stability"] == "unstable" and abs(m["imag"] / (2 * math.pi) - 81.04) < 0.01]
+        h.close(f"forward modes that grow, {damping} N s/m", len(grows), 1, 0)
+        h.close("log decrement", -2 * math.pi * grows[0]["real"] / grows[0]["imag"] if grows else None, -1.203, 0.004)
+        h.true("static warns", warned(s["s"], "unstable", "81.04 Hz"))
+    spring = "elements={spring: {node: 11, role: other, static_load: false, stiffness: [-5e6 N/m, 0 N/m, 0 N/m, 0 N/m]}}"
+    for damping in (0, 30, 1000):
+        s = h.run(deck, f"spring {damping}", [spring, f"bearings.*.film.damping={damping} N s/m"], launcher=[])
+        first = s["m"]["modes"][0]
+        h.close(f"s of the shaft on a negative spring, {damping} N s/m [1/s]", first["real"], 903, 1)
+        h.true("diverges", first["stability"] == "diverges" and warned(s["s"], "diverges"))
 
 
 def missing(h):

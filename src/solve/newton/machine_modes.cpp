@@ -92,6 +92,24 @@ public:
     const double reach = farthest(found);
     for (spectral::Mode& m : near(target, count))
       if (std::abs(m.lambda) > reach * (1 + 1e-6)) found.push_back(std::move(m));
+    sort(found);
+  }
+
+  // The real eigenvalue that a count has seen about `place`, if it is not among those found. False if there is none.
+  bool add_real(std::vector<spectral::Mode>& found, double place) {
+    for (spectral::Mode& m : near(place, 2)) {
+      const auto same = [&](const spectral::Mode& other) {
+        return std::abs(other.lambda - m.lambda) <= 1e-6 * std::abs(m.lambda);
+      };
+      if (m.lambda.imag() != 0 || m.lambda.real() <= 0 || std::any_of(found.begin(), found.end(), same)) continue;
+      found.push_back(std::move(m));
+      sort(found);
+      return true;
+    }
+    return false;
+  }
+
+  static void sort(std::vector<spectral::Mode>& found) {
     std::stable_sort(found.begin(), found.end(), [](const spectral::Mode& m, const spectral::Mode& n) {
       return std::pair(m.lambda.imag(), m.lambda.real()) < std::pair(n.lambda.imag(), n.lambda.real());
     });
@@ -140,13 +158,13 @@ MachineModes whole_modes(problem::System& system, Vec x, spectral::EigenOptions 
     if (done || last) {
       spectral::EigenCount counted;
       if (sparse) counted = spectral::count_eigenvalues(system, x, out.modes);
-      if (counted.real > 0) search.add(out.modes, counted.real, 2);
+      const bool lost = counted.real > 0 && !search.add_real(out.modes, counted.real);
       out.frequency = out.decay = counted.radius;
       out.counted = counted.counted;
-      out.missed = counted.missed;
+      out.missed = counted.missed + (lost ? 1 : 0);
       if (!counted.sure) out.doubt = "the phase of the determinant could not be followed";
       out.gave_up = !done && count < system.size();
-      if (last || counted.missed == 0 || !counted.sure || count >= most_for_count * options.count) return out;
+      if (last || out.missed == 0 || !counted.sure || count >= most_for_count * options.count) return out;
     }
     count = std::min<int>(2 * count, system.size());
   }
