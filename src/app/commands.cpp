@@ -122,7 +122,7 @@ std::string checked(MPI_Comm comm, const DeckRequest& request) {
   constexpr double notable = 2e8;
   for (const auto& s : deck.studies) {
     const auto* sweep = dynamic_cast<const study::Sweep*>(s.get());
-    const double bytes = s->memory(m, deck.layout);
+    const double bytes = s->memory(m, layout_of(deck));
     text += fmt::format("  {} ({}{}){}\n", s->name(), s->kind(),
                         sweep ? ", " + count(sweep->variants().size(), "variant", "variants") : "",
                         bytes < notable ? "" : fmt::format(", about {} of memory", deck::write_memory(bytes)));

@@ -107,7 +107,7 @@ void describe(deck::Description<Limits>& d) {
 namespace {
 
 void check_memory(const Study& study, const Deck& deck, std::string_view path, const deck::Report& report) {
-  const double bytes = study.memory(deck.machine, deck.layout);
+  const double bytes = study.memory(deck.machine, layout_of(deck));
   if (bytes > deck.limits.memory)
     report.fail(path, fmt::format("'{}' needs about {} of memory, and limits.memory is {}", study.name(),
                                   deck::write_memory(bytes), deck::write_memory(deck.limits.memory)));
@@ -120,6 +120,7 @@ void describe(deck::Description<Deck>& d) {
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
   d.add("limits", &Deck::limits, "what a run may take");
   d.add("layout", &Deck::layout, "how ranks share the work, and how much of it error bars may take");
+  d.add("bars", &Deck::bars, "where the error bars of results come from");
   d.check([](const Deck& deck, const deck::Report& r) {
     const auto holds = [](const auto& s) { return s->needs_bearings(); };
     const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;
@@ -146,6 +147,12 @@ void describe(deck::Description<Deck>& d) {
   });
 }
 
+LayoutOptions layout_of(const Deck& deck) {
+  LayoutOptions layout = deck.layout;
+  layout.bars = deck.bars;
+  return layout;
+}
+
 Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides) {
   const deck::Files files(comm);
   std::vector<deck::Change> changes;
@@ -169,7 +176,12 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
 }
 
 std::vector<std::string> unusual(const Deck& d) {
-  return unusual_lubricants(d.machine);
+  std::vector<std::string> all = unusual_lubricants(d.machine);
+  if (d.bars == BarsFrom::none)
+    all.emplace_back(
+        "bars: none: the errors of the meshes are not estimated. Stability and margins are those of the meshes in use; "
+        "whether a bifurcation is supercritical is undetermined");
+  return all;
 }
 
 std::vector<std::string> warnings(const Deck& d) {

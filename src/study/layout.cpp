@@ -19,6 +19,16 @@
 
 namespace whirl::study {
 
+std::span<const deck::Name<BarsFrom>> names(BarsFrom) {
+  using enum BarsFrom;
+  static constexpr deck::Name<BarsFrom> table[] = {
+      {meshes, "meshes", "from the same number on other meshes of films, time and shaft"},
+      {none, "none",
+       "no other meshes and no bars, in a fraction of the time; whether a bifurcation is supercritical is not "
+       "decided"}};
+  return table;
+}
+
 std::span<const deck::Name<LayoutOptions::Machine>> names(LayoutOptions::Machine) {
   using enum LayoutOptions::Machine;
   static constexpr deck::Name<LayoutOptions::Machine> table[] = {

@@ -14,7 +14,8 @@ void run_one(Study& study, MPI_Comm comm, const Deck& deck, const Say& say, bool
   if (!resume || !store.finished(study.name())) {
     Findings findings(comm, study.name(), std::string(study.kind()), store.checkpoint_path(study.name()), say);
     const auto part = [&](const std::string& name) { return store.checkpoint_path(study.name() + " " + name); };
-    Context context{comm,   deck.machine, deck.layout, findings, store.studies(), store.summaries(),
+    const LayoutOptions layout = layout_of(deck);
+    Context context{comm,   deck.machine, layout, findings, store.studies(), store.summaries(),
                     resume, deck.studies, part};
     StudyResult result = result_of(study, context);
     put_premises(result, deck.machine, study);

@@ -40,7 +40,7 @@ def sections(h):
     """Cycles that nothing forces: how often they cross a section until they close, and their period, which is that of the
     branch of cycles and does not depend on the section."""
     inputs = h.source / "inputs/other_systems"
-    quick = "discard: 100, revolutions: 48, samples: 16, tolerance: 1.0e-7"
+    quick = "discard: 60, revolutions: 32, samples: 16, tolerance: 1.0e-6"
     for c, loops in ROSSLER.items():
         path = write(h, f"rossler_{c}", "other_systems/rossler.yaml",
                      f"  - motion: {{name: own, speed: 1 rad/s, start: {{offset: [1, 0]}}, {quick}, exponents: 2}}\n"
@@ -57,7 +57,7 @@ def sections(h):
                    key=lambda f: abs(f * value(run["own"], "period.time") - 1))
         h.close("    the frequency of its slowest tone times its period", tone * value(run["own"], "period.time"), 1, 2e-3)
     path = write(h, "brusselator", "other_systems/brusselator.yaml",
-                 "  - motion: {name: s, speed: 1 rad/s, start: {offset: [0.1, 0]}, discard: 60, revolutions: 20, samples: 16, tolerance: 1.0e-8, exponents: 0}\n")
+                 "  - motion: {name: s, speed: 1 rad/s, start: {offset: [0.1, 0]}, discard: 40, revolutions: 12, samples: 16, tolerance: 1.0e-8, exponents: 0}\n")
     s = h.run(path, "brusselator", launcher=[])["s"]
     h.close("Brusselator: period, by an independent computation [s]", value(s, "period.time"), CYCLES[16][0], 2e-6)
     h.true("    said to be a limit cycle without exponents", kind(s) == "limit_cycle" and value(s, "period") == 1, kind(s))
@@ -74,8 +74,8 @@ def sections(h):
 
 def unnoticed(h):
     """A section neither changes the motion nor what a resumed one finds, on one rank and on two."""
-    study = ("  - motion: {{name: s, speed: 1 rad/s, start: {{offset: [0.1, 0]}}, discard: 8, revolutions: 24, samples: 16,"
-             " tolerance: 1.0e-7, exponents: 2{}}}\n")
+    study = ("  - motion: {{name: s, speed: 1 rad/s, start: {{offset: [0.1, 0]}}, discard: 3, revolutions: 8, samples: 16,"
+             " tolerance: 1.0e-6, exponents: 2{}}}\n")
     plain, cut = (write(h, n, "other_systems/brusselator.yaml", study.format(t))
                   for n, t in (("plain", ""), ("cut", ", section: {of: middle.x, value: 2, direction: both}")))
     h.run(plain, "plain", launcher=[])
@@ -85,7 +85,7 @@ def unnoticed(h):
             h.close(f"{name} with another section", np.abs(a[f"studies/s/{name}"][()] - b[f"studies/s/{name}"][()]).max(), 0, 0)
         h.true("other sections have other points", a["studies/s/section/x"].shape != b["studies/s/section/x"].shape)
     out = h.work / "killed"
-    h.kill_at_checkpoint(plain, out)
+    h.kill_at_checkpoint(plain, out, after=6)
     h.run(plain, "killed", flags=["--resume"], launcher=[])
     h.run(cut, "two", launcher=[*h.launcher, "-n", "2"])
     # An exponent is zero there, and rounding counts per its size.

@@ -6,7 +6,7 @@ branches.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 import sys
 
 from compare import same_results
-from harness import RANKS, Harness, value
+from harness import BARS, RANKS, Harness, value
 
 NAMES = ["B1", "B2", "B3", "B4", "B5"]
 G25, G63 = "studies.1.cycle_branch.", "studies.2.cycle_branch."
@@ -152,7 +152,7 @@ def doubled(h, overrides=SHORT):
     finer = {"120 intervals": [G25 + "intervals=120", G63 + "intervals=120"],
              "degree 3": [G25 + "degree=3", G63 + "degree=3"]}
     for what, more in finer.items():
-        run = h.run("unbalance.yaml", what, overrides + more)
+        run = h.run("unbalance.yaml", what, overrides + more, bars=False)
         for grade in ("G2.5", "G6.3"):
             a, b = base[grade]["bifurcations"], run[grade]["bifurcations"]
             h.true(f"{grade}, {what}: the same bifurcations", [x["type"] for x in a] == [x["type"] for x in b])
@@ -172,7 +172,7 @@ def ranks(h):
                                "studies.1.unbalance_response.range={from: 600 rpm, to: 900 rpm}"]}
     for deck, overrides in decks.items():
         for n in RANKS:
-            h.run(deck, f"{deck}.{n}", overrides, launcher=[*h.launcher, "-n", str(n)])
+            h.run(deck, f"{deck}.{n}", overrides, launcher=[*h.launcher, "-n", str(n)], bars=BARS or deck != "unbalance.yaml")
             if n > 1:
                 for what, difference, within in same_results(h.work / f"{deck}.1", h.work / f"{deck}.{n}",
                                                              1e-7 if "layout.machine=all_ranks" in overrides else 1e-8):

@@ -66,4 +66,23 @@ for option in (["-newton_snes_atol", "1e10"], ["-newton_snes_rtol", "1e-3"], ["-
     done = subprocess.run([h.program, "run", str(CASES / "time_mesh.yaml"), "-o", str(h.work / "loose"), "--", *option], capture_output=True, text=True)
     h.true(f"{' '.join(option)} is refused by name", done.returncode == 2 and option[0] in done.stderr, f"exit {done.returncode} {done.stderr}")
 
+# Without bars no study solves on other meshes: no number has a bar, and what rests on one is undetermined.
+NONE = ("studies=[{static: {speed: 320 rad/s}}, {modes: {speeds: [320 rad/s], count: 4}}, {unbalance_response: {unbalance: [a], range: {from: 300 rad/s, "
+        "to: 500 rad/s}, points: 9}}, {frequency_response: {speed: 320 rad/s, range: {from: 100 rad/s, to: 400 rad/s}, points: 4, inputs: [{bearing: half, "
+        "direction: x}]}}, {equilibrium_branch: {name: rest, parameter: speed, range: {from: 400 rad/s, to: 460 rad/s}}}, {cycle_branch: {name: cycles, "
+        "unbalance: [a], parameter: speed, range: {from: 320 rad/s, to: 330 rad/s}, intervals: 12, degree: 2, adapt_mesh: false, at: [322 rad/s]}}]")
+done = subprocess.run(h.command(h.source / "inputs/compliant_rotor/short.yaml", h.work / "none", ["bearings.half.film.cells=[16, 4]", NONE], bars=False),
+                      capture_output=True, text=True)
+found = h.studies("none")
+h.true("all studies end", done.returncode == 0 and len(found) == 6 and all(s["points"] > 0 for s in found.values()), done.stdout + done.stderr)
+h.true("no bar on the screen, and why, once", "+-" not in done.stdout and done.stdout.count("the errors of the meshes are not estimated") == 1, done.stdout)
+h.true("none in the results", not any(isinstance(x, float) for s in found.values() for e in [*s["values"].values(), *s["bifurcations"], *s.get("modes", [])]
+                                      for k, x in e.items() if "uncertainty" in k and k != "uncertainty_location"), str(found)[:2000])
+b = found["rest"]["bifurcations"][0]
+h.true("what needs a bar is undetermined", b["type"] == "hopf" and b["criticality"] == "undetermined" and "of unknown error" in b["criticality_by"], str(b))
+h.true("stability is that of the mesh", found["rest"]["stability"] == "loses stability" and found["cycles"]["stability"] == "stable throughout",
+       f"{found['rest']['stability']}, {found['cycles']['stability']}")
+said = (h.work / "none/summary.json").read_text()
+h.true("the results say it once", said.count("the errors of the meshes are not estimated") == 1)
+
 h.finish()

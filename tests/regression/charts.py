@@ -32,7 +32,7 @@ def at_end(speed, load, wanted):
 
 
 def rigid(h):
-    run = h.run((h.source / "inputs/rigid_rotor/stability_chart.yaml").resolve(), "chart")
+    run = h.run((h.source / "inputs/rigid_rotor/stability_chart.yaml").resolve(), "chart", bars=True)
     hopf, flips = curve(h, "chart", "whirl begins"), curve(h, "chart", "half-speed whirl begins")
     last = curve(h, "chart", "half-speed whirl ends")
     jump, large = curve(h, "chart", "small whirl jumps"), curve(h, "chart", "large whirl ends")
@@ -122,7 +122,7 @@ def folds(h):
         deck, name = h.work / "folds.yaml", f"folds_{load}"
         deck.write_text(FOLDS.format(base=(h.source / "inputs/rigid_rotor/short_f1.yaml").resolve(), load=load, step=step,
                                      speed=speed, initial=initial, longest=longest, points=points))
-        run = h.run(deck, name, code=None)["curve"]
+        run = h.run(deck, name, code=None, bars=True)["curve"]
         ends = run.get("codimension_two") or []
         h.true(f"from {load} N: ends at a generalised Hopf point", run["status"] == "completed" and len(ends) == 1, run["status"])
         found += [(load, c["value"], c["value_uncertainty"], c["second_value"], c["second_value_uncertainty"]) for c in ends]

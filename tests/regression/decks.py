@@ -113,7 +113,7 @@ def hopf(study):
 def balanced(h):
     short = ["studies.1.equilibrium_branch.range={from: 4700 rpm, to: 5200 rpm}",
              "studies.1.equilibrium_branch.step.max=125 rpm"]
-    full = h.run("balanced.yaml", "full", short)["balanced"]
+    full = h.run("balanced.yaml", "full", short, bars=True)["balanced"]
     reduced = h.run("balanced.yaml", "guyan", short + GUYAN)["balanced"]
     h.true("one Hopf bifurcation each", len(hopf(full)) == 1 and len(hopf(reduced)) == 1)
     first, guyan = hopf(full)[0], hopf(reduced)[0]
@@ -139,7 +139,7 @@ def balanced(h):
 def liners(h):
     """On coarse films: the threshold within 3 % of our own value on 100 x 20 cells; the cycle by collocation, another solver."""
     coarse = "bearings.*.film.cells=[24, 6]"
-    balance = h.run("liners.yaml", "balanced", [coarse, "studies=[" + ", ".join(
+    balance = h.run("liners.yaml", "balanced", bars=True, overrides=[coarse, "studies=[" + ", ".join(
         ("{static: {name: at service speed, speed: 3600 rpm}}",
          "{equilibrium_branch: {name: balanced, parameter: speed, range: {from: 5500 rpm, to: 6000 rpm},"
          " step: {initial: 250 rpm, min: 0.1 rpm, max: 400 rpm}, detect: [hopf]}}")) + "]"])

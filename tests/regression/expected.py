@@ -72,7 +72,7 @@ def finite_curve(h):
     run = h.run(deck(h, "compliant_rotor/finite_curve.yaml"), "curve",
                 [film + "cells=[24, 6]", branch + "range={from: 320 rad/s, to: 340 rad/s}", branch + "follow_flips=false",
                  branch + "flips=[]", "studies.2.mesh_convergence.doublings=1",
-                 "studies.3.mesh_convergence={name: again, of: unbalanced, bifurcations: [1], doublings: 1}"])
+                 "studies.3={static: {name: at rest, speed: 320 rad/s}}"])
     found = run["unbalanced"]["bifurcations"]
     h.true("one flip, nothing else", [b["type"] for b in found] == ["flip"])
     converged(h, "first flip", h.work / "curve/results.h5", "fine", 1, FINITE_FLIPS[0], (1.2, 2.5))

@@ -163,14 +163,14 @@ def resume(h):
     """Killed and resumed to the bit: factors that implicit schemes and deviations keep are forgotten at each end of a revolution."""
     options = "speed: 2700 rad/s, start: {offset: [0.3, 0]}, samples: 16"
     noise = "forces: {f: {bearing: A, direction: x, signal: random, rms: 3 N, cutoff: 2 kHz, seed: 5}}"
-    for name, more in (("exponents", "discard: 20, revolutions: 180, exponents: 2, tolerance: 1e-6"),
-                       ("newmark", "discard: 20, revolutions: 180, exponents: 0, integrator: {type: newmark, steps: 512}"),
-                       ("noise", "discard: 0, revolutions: 60, exponents: 2, tolerance: 1e-5, " + noise)):
+    for name, more in (("exponents", "discard: 4, revolutions: 24, exponents: 2, tolerance: 1e-6"),
+                       ("newmark", "discard: 4, revolutions: 24, exponents: 0, integrator: {type: newmark, steps: 512}"),
+                       ("noise", "discard: 0, revolutions: 24, exponents: 2, tolerance: 1e-5, " + noise)):
         deck = h.source / DECKS / "whirl.yaml"
         overrides = ["bearings.A.film.cells=[16, 6]", "layout.refined_states=1", f"studies=[{{motion: {{name: m, {options}, {more}}}}}]"]
         h.run(deck, name, overrides, launcher=[])
         out = h.work / f"{name} killed"
-        h.kill_at_checkpoint(deck, out, overrides)
+        h.kill_at_checkpoint(deck, out, overrides, after=12)
         h.run(deck, out.name, overrides, flags=["--resume"], launcher=[])
         for what, difference, within in same_results(h.work / name, out, 0):
             h.close(f"{name}: {what}", difference, 0, within)

@@ -11,6 +11,8 @@ import tempfile
 
 # Counts of ranks that must agree: three at night only.
 RANKS = (1, 2, 3) if os.environ.get("WHIRL_TEST_RANKS") == "3" else (1, 2)
+# Whether runs have error bars: no where other numbers are the subject of the test (tests/regression/CMakeLists.txt).
+BARS = os.environ.get("WHIRL_TEST_BARS") != "none"
 
 
 def family(pid):
@@ -52,16 +54,17 @@ class Harness:
         records = json.loads((self.source / "tests/reference/turbine_train/train.json").read_text())["records"]
         self.records = {r["id"]: r for r in records}
 
-    def command(self, deck, out, overrides=(), flags=(), launcher=None):
+    def command(self, deck, out, overrides=(), flags=(), launcher=None, bars=BARS):
         words = [*(self.launcher if launcher is None else launcher), self.program, "run", str(self.train / deck)]
-        for o in overrides:
+        for o in (*overrides, *([] if bars else ["bars=none"])):
             words += ["--set", o]
         return [*words, "-o", str(out), *flags]
 
-    def run(self, deck, name, overrides=(), flags=(), launcher=None, code=0):
-        """The studies of a run by name. A run that ends with another code than `code` ends the test; None allows any."""
+    def run(self, deck, name, overrides=(), flags=(), launcher=None, code=0, bars=BARS):
+        """The studies of a run by name. A run that ends with another code than `code` ends the test; None allows any.
+        `bars`: True where the test looks at error bars."""
         out = self.work / name
-        done = subprocess.run(self.command(deck, out, overrides, flags, launcher), capture_output=True, text=True)
+        done = subprocess.run(self.command(deck, out, overrides, flags, launcher, bars), capture_output=True, text=True)
         if code is not None and done.returncode != code:
             sys.exit(f"{deck}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}")
         return self.studies(name)

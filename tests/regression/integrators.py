@@ -55,10 +55,10 @@ def resume(h):
     deck = h.source / "inputs/merot/integrators.yaml"
     for name in ("newmark", "adams_moulton", *SEVERAL_STEPS):
         steps = SCHEMES[name].replace("2048", "1024")
-        overrides = [f"studies=[{study(name, steps, 200 if name == 'adams_moulton' else 400)}]"]
+        overrides = [f"studies=[{study(name, steps, 24)}]"]
         h.run(deck, name, overrides, launcher=[])
         out = h.work / f"{name} killed"
-        h.kill_at_checkpoint(deck, out, overrides)
+        h.kill_at_checkpoint(deck, out, overrides, after=8)
         h.run(deck, out.name, overrides, ["--resume"], launcher=[])
         if name not in SEVERAL_STEPS:
             for what, difference, within in same_results(h.work / name, out, 1e-14):

@@ -128,7 +128,7 @@ def response(h):
     # Far below all resonances: the springs, and the shaft's own compliance.
     stiff = ["studies.1.frequency_response={name: disc, speed: 0 rad/s, range: {from: 0.1 rad/s, to: 0.2 rad/s}, points: 2, inputs: [{bearing: left, direction: x}]}",
              "bearings.*.film.stiffness=1e3 N/m"]
-    s = h.run(deck, "soft", stiff, launcher=[])["disc"]
+    s = h.run(deck, "soft", stiff, launcher=[], bars=True)["disc"]
     h.true("without film meshes no bars", "uncertainty" not in s["values"]["bearing.left.x.from.bearing.left.x.largest"])
     h.close("a soft spring at rest [m/N]", value(s, "bearing.left.x.from.bearing.left.x.largest"), 1e-3, 1e-6)
 
@@ -137,7 +137,7 @@ def coefficients(h):
     """The response by K(w), C(w) is that of the machine with its films' states; constant ones are not."""
     deck = h.source / "inputs/aerostatic/response.yaml"
     few = ["studies.1.frequency_response.points=8", "bearings.A.film.cells=[48, 16]"]
-    s = h.run(deck, "few", few, launcher=[])["journal"]
+    s = h.run(deck, "few", few, launcher=[], bars=True)["journal"]
     h.close("by coefficients at each frequency", value(s, "coefficients.difference"), 0, 1e-8)
     h.true("by those of synchronous whirl", value(s, "constant.1.difference") > 0.05, f"{value(s, 'constant.1.difference'):.3g}")
     # Bars of the coarse film against one with half the spacing, real and imaginary part together.

@@ -71,7 +71,7 @@ def generalised_flips(h, found):
     deck.write_text(BORN.format(base=(h.source / "inputs/rigid_rotor/short_f1.yaml").resolve()))
     lower, upper = found[0][1] * CLEARANCE, found[-1][1] * CLEARANCE
     for eccentricity in (lower - 0.1, upper - 0.1, upper + 0.1):
-        run = h.run(deck, f"born_{eccentricity:.3f}", overrides=[f"unbalance.a.planes.1.eccentricity={eccentricity:.6f} um"])
+        run = h.run(deck, f"born_{eccentricity:.3f}", overrides=[f"unbalance.a.planes.1.eccentricity={eccentricity:.6f} um"], bars=True)
         flips = [b for b in run["branch"]["bifurcations"] if b["type"] == "flip"]
         for flip, turns in zip(flips, (lower, upper)):
             h.true(f"flip at {flip['value']:.1f} rad/s, {eccentricity:.3f} um: compared with its branch",

@@ -184,7 +184,7 @@ def torus(h, whole=False):
     """The train at G2.5 beyond its Neimark-Sacker point: what leaves the cycle there has the growth and the whirl of its multiplier;
     at 5050 rpm it ends on a torus. Shortened to what is on its way."""
     short = [f"studies.{k}.motion.{option}" for k, options in
-             ((2, ("discard=100", "revolutions=300")), (3, ("discard=600", "revolutions=600"))) for option in options]
+             ((2, ("discard=60", "revolutions=200")), (3, ("discard=400", "revolutions=400"))) for option in options]
     found = h.run(h.source / "inputs/turbine_train/torus.yaml", "torus", [] if whole else short, launcher=[])
     with h5py.File(h.work / "torus/results.h5") as f:
         curves = {name: numpy.column_stack([f[f"studies/{name}/poincare/{c}"][:] for c in ("x", "y")])

@@ -241,7 +241,11 @@ def design(h, whole=False):
             within = first["uncertainties"][k] + error + 2 if whole else 0.016 * fine
             h.close(f"{name}, {row}: threshold [rpm]", first["values"][k], fine, within)
         found_sign = trend(found[name], "balanced.hopf.1")["sign"]
-        h.true(f"{name}: sign of the trend is {found_sign}", found_sign in ((sign, "undetermined") if sign is None or not whole else (sign,)))
+        if whole:
+            h.true(f"{name}: sign of the trend is {found_sign}", found_sign in ((sign,) if sign else (None, "undetermined")))
+        elif sign:
+            steps = trend(found[name], "balanced.hopf.1")["difference"]
+            h.true(f"{name}: the threshold {'rises' if sign == '+' else 'falls'}", steps and all((d > 0) == (sign == "+") for d in steps if d is not None), steps)
     if whole:
         for name in THRESHOLDS:
             for variant in found[name]["variants"]:

@@ -28,10 +28,11 @@ class CompliantLocated : public ::testing::TestWithParam<Case> {};
 TEST_P(CompliantLocated, AgreesWithTheReference) {
   const Case& c = GetParam();
   const std::string film = "bearings.half.film.", branch = "studies.2.cycle_branch.";
+  const bool bars = c.name == "short_b01";  // one of them is enough
   study::Deck deck = study::load(
       MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/" + c.deck,
-      {fmt::format("{}compliance={}", film, c.compliance), film + "cells=[50, 4]", film + "quadrature=simpson",
-       film + "differences=upwind",
+      {bars ? "bars=meshes" : "bars=none", fmt::format("{}compliance={}", film, c.compliance), film + "cells=[50, 4]",
+       film + "quadrature=simpson", film + "differences=upwind",
        fmt::format("{}range={{from: {:.17g} rad/s, to: {:.17g} rad/s}}", branch, c.from * c.scale, c.to * c.scale),
        fmt::format("{}intervals={}", branch, c.intervals)});
   deck.studies.erase(deck.studies.begin());
@@ -41,7 +42,7 @@ TEST_P(CompliantLocated, AgreesWithTheReference) {
   for (std::size_t k = 0; k < c.points.size(); ++k) {
     EXPECT_EQ(s.bifurcations[k].type, c.points[k].type);
     EXPECT_NEAR(s.bifurcations[k].value / c.scale, c.points[k].speed, c.points[k].tolerance * c.points[k].speed);
-    EXPECT_GE(s.bifurcations[k].uncertainty, 0);
+    EXPECT_EQ(s.bifurcations[k].uncertainty >= 0, bars);
   }
 }
 
@@ -70,7 +71,7 @@ TEST(RubberLiner, BendsTheResonance) {
   const auto run = [&](const std::string& rubber, const std::string& to, const std::string& name) {
     study::Deck deck =
         study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_13.yaml",
-                    {film + "cells=[60, 4]", film + "rubber_thickness=" + rubber,
+                    {"bars=none", film + "cells=[60, 4]", film + "rubber_thickness=" + rubber,
                      "studies.1.cycle_branch.range={from: 300 rad/s, to: " + to + "}"});
     return test::run_deck(deck, name).at(0);
   };
@@ -90,6 +91,7 @@ TEST(RubberLiner, BendsTheResonance) {
 // length; with asperities that carry it goes on.
 TEST(Contact, ABranchGoesOnWhereItTouched) {
   const auto run = [](const std::string& to, std::vector<std::string> film, bool contact, const std::string& name) {
+    film.emplace_back("bars=none");
     film.push_back("studies.2.cycle_branch.range={from: 240 rad/s, to: " + to + "}");
     if (contact) film.emplace_back("bearings.half.film.contact={roughness: 0.5 um, pressure: 1 MPa}");
     study::Deck deck =

@@ -45,7 +45,7 @@ TEST(Methods, MultipliersConvergeWithTheOrderOfTheScheme) {
                     "step: {initial: 1 rad/s, min: 0.1 rad/s, max: 1 rad/s}", "at: [352 rad/s]", "tolerance: 1e-12"};
   const std::string deck = "rigid_rotor/short_f1.yaml";
   const auto value = [&](const std::string& name, const Words& words) {
-    const auto s = follow(name, deck, {}, range + words).at(0);
+    const auto s = follow(name, deck, {"bars=none"}, range + words).at(0);
     EXPECT_EQ(s.status, "completed") << name;
     std::pair<double, double> out;
     for (const auto& [k, q] : s.values) {
@@ -103,7 +103,7 @@ TEST(Methods, FlipsLieWithinTheStatedUncertainty) {
 
 // The branch of twice the period born at the subcritical flip turns at a fold.
 TEST(Methods, PeriodDoublingByFiniteDifferences) {
-  const auto all = follow("doubling", "rigid_rotor/short_f1.yaml", {},
+  const auto all = follow("doubling", "rigid_rotor/short_f1.yaml", {"bars=none"},
                           Words{"unbalance: [a]", "range: {from: 384 rad/s, to: 400 rad/s}", "follow_flips: true",
                                 "step: {initial: 1 rad/s, min: 0.001 rad/s, max: 4 rad/s}", "max_points: 30"} +
                               steps("finite_difference", "classical", 100, 0));
@@ -144,7 +144,7 @@ TEST(Methods, SelfExcitedWhirl) {
 
 // The compliant short film with N = 50 at B = 0.1, a* = 0.2, Omega* = 2: 54 states, of which a few multipliers matter.
 TEST(Methods, CompliantFilm) {
-  const Words film{"bearings.half.film.cells=[50, 4]", "bearings.half.film.quadrature=simpson",
+  const Words film{"bars=none", "bearings.half.film.cells=[50, 4]", "bearings.half.film.quadrature=simpson",
                    "bearings.half.film.differences=upwind"},
       range{"unbalance: [a]", "range: {from: 320 rad/s, to: 322 rad/s}",
             "step: {initial: 2 rad/s, min: 0.1 rad/s, max: 2 rad/s}", "at: [320 rad/s]"};

@@ -97,7 +97,7 @@ test::Recorded follow(Problem& problem, const solve::Cycle& guess, Multipliers m
   };
   auto options = test::range(1.0, 2.2, 0.3);
   options.newton.tolerance = 1e-10;
-  options.location_tolerance = 1e-6;
+  options.location_tolerance = 2e-5;
   r.end = solve::follow_branch(problem, problem.scatter(guess), options, callbacks);
   return r;
 }

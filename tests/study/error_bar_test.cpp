@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/study/layout_options.hpp"
 
@@ -257,6 +258,24 @@ TEST(ErrorBar, HasEachMeshOnce) {
   EXPECT_EQ(cells({60, 16})[0].back(), 112);
   layout.refined_states = 400;
   EXPECT_EQ(cells({60, 16})[0], (std::vector{30, 38, 45, 53}));
+}
+
+// `bars: none`: no mesh of any kind beside the one in use, and a bar that is unknown, not zero.
+TEST(ErrorBar, IsUnknownWhereNoneIsWanted) {
+  system::Machine machine;
+  machine.bearings.resize(1);
+  film::Reynolds film;
+  film.cells = {60, 16};
+  machine.bearings[0].film = film;
+  machine.rotor.type = rotor::Options::Type::shaft;
+  LayoutOptions layout;
+  EXPECT_FALSE(film_meshes(machine, layout).empty());
+  EXPECT_TRUE(has_shaft_mesh(machine, layout));
+  EXPECT_EQ(error_bar(1, {}, law_of(machine, layout)).total(), 0);
+  layout.bars = BarsFrom::none;
+  EXPECT_TRUE(film_meshes(machine, layout).empty());
+  EXPECT_FALSE(has_shaft_mesh(machine, layout));
+  EXPECT_TRUE(std::isnan(error_bar(1, {}, law_of(machine, layout)).total()));
 }
 
 // Thresholds of the train in films that conserve their mass, on 120 x 24 cells and the eight meshes beside it

@@ -95,7 +95,7 @@ TEST(WholeShaft, TimeModesAndDenseTransitionsFindTheSameCycle) {
 TEST(WholeShaft, TrainAtServiceSpeed) {
   auto t = test::train({60, 16}, false);
   test::add_gen_pair(t, 2.5);
-  const Answer a = cycle_of(MPI_COMM_WORLD, t, 120 * M_PI, Joining::cheapest, 60);
+  const Answer a = cycle_of(MPI_COMM_WORLD, t, 120 * M_PI, Joining::cheapest, 40);
   EXPECT_LE(a.newton.iterations, 6);
   EXPECT_LE(a.newton.linear_iterations, 3 * a.newton.iterations);
   const double y[] = {26.71e-6, 32.53e-6, 19.86e-6, 3.348e-6, 25.72e-6};

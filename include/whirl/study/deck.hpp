@@ -24,10 +24,13 @@ struct Deck {
   system::Machine machine;
   Limits limits;
   LayoutOptions layout;
+  BarsFrom bars = BarsFrom::meshes;
   std::vector<std::unique_ptr<Study>> studies;
   std::vector<deck::Change> changes;  ///< what the overrides did
 };
 void describe(deck::Description<Deck>& d);
+/// What studies are given of the layout: with the deck's `bars`.
+[[nodiscard]] LayoutOptions layout_of(const Deck& deck);
 
 /// Reads and checks the deck at `path` after `overrides` (arguments of `--set`); nothing is solved. Collective; the
 /// same on all ranks. Throws core::InputError (agreed) with a line per problem.

@@ -8,9 +8,14 @@
 
 namespace whirl::study {
 
+/// What error bars come from: other meshes of films, time and shaft, or nothing at all.
+enum class BarsFrom { meshes, none };
+[[nodiscard]] std::span<const deck::Name<BarsFrom>> names(BarsFrom);
+
 /// Who holds one machine, its states and matrices, and how large others are made beside it.
 struct LayoutOptions {
   enum class Machine { automatic, one_rank, all_ranks };
+  BarsFrom bars = BarsFrom::meshes;  ///< a key of the deck itself, see layout_of()
   Machine machine = Machine::automatic;
   int shaft_freedoms = 20000;      ///< of the shaft before its reduction; other systems: half their states
   int film_states = 3000;          ///< of all films together

@@ -133,6 +133,7 @@ double student_quantile(double probability, int freedoms) {
 
 Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& law) {
   Bar bar;
+  if (!law.estimated) bar.film_mesh = unknown;
   double unknown_squares = 0, by_freedom = 0;
   for (const Axis axis : all_axes) {
     std::vector<Sample> own;

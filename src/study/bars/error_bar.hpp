@@ -31,6 +31,7 @@ struct Sample {
 
 /// What is known of the discretisation before anything is computed.
 struct MeshLaw {
+  bool estimated = true;  ///< false: nothing is computed on other meshes, and every bar is unknown
   double film_order = 2;
   double time_order = 2;
   double shaft_order = 4;

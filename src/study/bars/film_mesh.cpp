@@ -16,8 +16,9 @@ system::Train with_film_mesh(system::Train train, const std::array<double, 2>& f
   return train;
 }
 
-MeshLaw law_of(const system::Machine& machine) {
+MeshLaw law_of(const system::Machine& machine, const LayoutOptions& layout) {
   MeshLaw law;
+  law.estimated = layout.bars == BarsFrom::meshes;
   law.shaft_order = order_of_shaft(machine.rotor.element);
   for (const auto& b : machine.bearings) {
     const film::Facts film = film::facts(b.film);
@@ -48,9 +49,11 @@ int fewest_cells(const system::Machine& machine, std::size_t direction) {
 }  // namespace
 
 std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOptions& layout) {
+  const MeshLaw law = law_of(machine, layout);
+  if (!law.estimated) return {};
   int states = 0;
   for (const auto& b : machine.bearings) states += film::facts(b.film, b.geometry.value_or(film::Geometry{})).states;
-  const bool kinks = law_of(machine).kinks;
+  const bool kinks = law.kinks;
   std::vector<double> factors{0.5, 2};
   if (states > layout.refined_states)
     factors = kinks ? std::vector{0.5, 0.625, 0.75, 0.875} : std::vector{0.5, 2.0 / 3};

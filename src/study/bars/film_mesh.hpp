@@ -26,7 +26,7 @@ struct FilmMesh {
 /// times as many, too, because half of them shows little; two more between them where forces have kinks, so that the
 /// scatter is seen; and coarser meshes only, as many of them, where films have more than LayoutOptions::refined_states:
 /// finer ones would cost more than the branch. Each mesh once: few cells are rounded to fewer meshes. Empty for
-/// machines without film meshes.
+/// machines without film meshes, and where LayoutOptions asks for no bars.
 [[nodiscard]] std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOptions& layout);
 
 /// The train with the cells of its films multiplied and rounded: at least four, even ones for Simpson's rule.
@@ -35,7 +35,7 @@ struct FilmMesh {
 /// Order of the films' equations (one with upwind differences, else two: cavitation limits it) and whether their forces
 /// have kinks themselves (film::Facts::smoothness: Simpson's rule, whose weights jump where the pressure changes its
 /// sign), or derivatives of them.
-[[nodiscard]] MeshLaw law_of(const system::Machine& machine);
+[[nodiscard]] MeshLaw law_of(const system::Machine& machine, const LayoutOptions& layout);
 
 /// Order at which errors of time steps fall that a scheme of order `scheme` makes on the machine's films. A step with a
 /// jump of a force's derivative k + 1 in it leaves an error of h^(k+2), in whichever place the jump stands: a film

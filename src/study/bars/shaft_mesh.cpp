@@ -1,6 +1,7 @@
 #include "study/bars/shaft_mesh.hpp"
 
 #include "whirl/rotor/divide.hpp"
+#include "whirl/study/layout_options.hpp"
 
 namespace whirl::study {
 
@@ -8,9 +9,9 @@ double order_of_shaft(rotor::Element element) {
   return element == rotor::Element::timoshenko ? 2 : 4;
 }
 
-bool has_shaft_mesh(const system::Machine& machine) {
-  return system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
-         machine.rotor.couplings.empty();
+bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout) {
+  return layout.bars == BarsFrom::meshes && system::is_rotor(machine) &&
+         machine.rotor.type == rotor::Options::Type::shaft && machine.rotor.couplings.empty();
 }
 
 system::Train with_cut_shaft(system::Train train, int parts) {

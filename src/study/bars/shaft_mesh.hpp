@@ -11,8 +11,8 @@ namespace whirl::study {
 /// angle is that of the static solution. Source: the elements' table (room rotor), measured.
 [[nodiscard]] double order_of_shaft(rotor::Element element);
 
-/// Whether the machine has a shaft of beams that can be cut: a shaft with couplings cannot.
-[[nodiscard]] bool has_shaft_mesh(const system::Machine& machine);
+/// Whether bars are wanted, and the machine has a shaft of beams that can be cut: a shaft with couplings cannot.
+[[nodiscard]] bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout);
 
 /// The mesh of with_cut_shaft(train, 2) among those that bars stand on.
 inline const FilmMesh cut_shaft_mesh{Axis::shaft, {1, 1}, 0.5};

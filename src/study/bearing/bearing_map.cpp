@@ -330,8 +330,8 @@ std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vecto
 void put_bars(const Context& context, Pieces& pieces, const BearingMapOptions& options, std::size_t which,
               const Mapper& map, const std::optional<system::Groups>& groups) {
   io::StudySummary& summary = context.results.summary();
-  Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine));
-  SummaryBars of_summary(summary, law_of(context.machine));
+  Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine, context.layout));
+  SummaryBars of_summary(summary, law_of(context.machine, context.layout));
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   int number = 0;
   for (const FilmMesh& mesh : meshes) {

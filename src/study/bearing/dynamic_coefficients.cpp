@@ -182,7 +182,7 @@ StudyResult DynamicCoefficients::run(Context& context) {
   for (std::string& line : lost_motions(enforced_of(found), speeds, options.all_frequencies(), options.amplitudes))
     summary.warnings.push_back(std::move(line));
 
-  const MeshLaw law = law_of(context.machine);
+  const MeshLaw law = law_of(context.machine, context.layout);
   Bars bars(numbers_of(found), law);
   SummaryBars of_summary(summary, law);
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);

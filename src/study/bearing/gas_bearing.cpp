@@ -236,7 +236,7 @@ StudyResult GasBearing::run(Context& context) {
     summary.set("capacity.eccentricity", none->at_capacity, "1");
   }
 
-  SummaryBars bars(summary, law_of(context.machine));
+  SummaryBars bars(summary, law_of(context.machine, context.layout));
   int mesh_number = 0;
   for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
     const std::string head = fmt::format("mesh {}", ++mesh_number);

@@ -13,6 +13,7 @@
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/study/layout_options.hpp"
 
 namespace whirl::study {
 namespace {
@@ -95,8 +96,9 @@ std::set<std::string> without_limit(ThdFilm& film, const ThdOptions& options, co
 
 }  // namespace
 
-std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double length) {
+std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double length, const LayoutOptions& layout) {
   std::vector<std::array<int, 3>> out{options.cells};
+  if (layout.bars == BarsFrom::none) return out;
   const std::array<double, 2> own = displacement(options, options.cells, length);
   for (int k = 1; k < options.meshes; ++k) {
     std::array<int, 3> cells = out.back();
@@ -111,7 +113,7 @@ std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double len
 
 void put_thd_bars(Context& context, ThdFilm& film, const ThdOptions& options, const film::Geometry& geometry,
                   double speed, const FilmStart& start, double energy_residual, Pieces& pieces) {
-  const std::vector<std::array<int, 3>> meshes = thd_meshes(options, geometry.length);
+  const std::vector<std::array<int, 3>> meshes = thd_meshes(options, geometry.length, context.layout);
   io::StudySummary& summary = context.results.summary();
   const auto total = [](const std::array<int, 3>& c) { return static_cast<double>(c[0]) * c[1] * c[2]; };
   // What feeds a film is a point or an edge that moves to the nearest node: errors of first order.

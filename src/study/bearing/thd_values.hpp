@@ -24,8 +24,9 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
 
 /// Intervals around and along and layers across of the meshes that the error bars stand on, the deck's first, each with
 /// half of the cells of the one before it in every direction. The list ends before a mesh on which an orifice would
-/// stand further from where it belongs than on the deck's.
-[[nodiscard]] std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double length);
+/// stand further from where it belongs than on the deck's, or with the deck's where no bars are wanted.
+[[nodiscard]] std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double length,
+                                                         const LayoutOptions& layout);
 
 /// Solves the film on the coarser meshes at one speed, puts the error bars beside the values that `context` has in its
 /// summary, and all values over the mesh into its results. Collective.

@@ -163,7 +163,7 @@ StudyResult MeshConvergence::run(Context& context) {
       state.set("trouble", trouble);
       pieces.save(std::move(state));
     }
-    const MeshLaw law = law_of(context.machine);
+    const MeshLaw law = law_of(context.machine, context.layout);
     const MeshLimit limit = mesh_limit(now.value, law.film_order, law.kinks);
     io::Bifurcation b = bifurcation_at(type_of(now.last.event), limit.limit, branch.parameter.path, unit,
                                        context.machine, branch.unbalance, coarse->follower->system());

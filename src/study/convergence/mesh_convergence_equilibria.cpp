@@ -63,7 +63,7 @@ StudyResult converge(Context& context, const MeshConvergenceOptions& options, co
       frequency.push_back(there[1]);
       seconds.push_back(results.seconds() - begin);
     }
-    const MeshLaw law = law_of(context.machine);
+    const MeshLaw law = law_of(context.machine, context.layout);
     const MeshLimit limit = mesh_limit(value, law.film_order, law.kinks),
                     whirl = mesh_limit(frequency, law.film_order, law.kinks);
     io::Bifurcation b =

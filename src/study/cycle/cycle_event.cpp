@@ -94,7 +94,8 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
         angle / cycle.period + b.more["whirl_frequency_rad_s"] * period / cycle.period;
   }
   // What the steps of the differences leave open no mesh decides.
-  const double error = decided(here.coefficient, doubt) ? std::max(of_coefficient[0].total(), doubt) : doubt;
+  const double error =
+      decided(here.coefficient, doubt) || !law().estimated ? std::max(of_coefficient[0].total(), doubt) : doubt;
   if (fold && std::isfinite(here.coefficient) && here.coefficient != 0)
     put_criticality(b, here.coefficient, error, "below", "above",
                     "second derivative of the parameter along the branch: the side on which the cycles exist");
@@ -109,7 +110,7 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
 // A fold right beside the birth of the branch may be the work of a film's kinks alone.
 void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
   const auto& all = context_.results.summary().bifurcations;
-  if (all.empty() || all.front().type != io::BifurcationType::hopf) return;
+  if (!law().estimated || all.empty() || all.front().type != io::BifurcationType::hopf) return;
   const double apart = std::abs(b.value - all.front().value);
   // What a mesh does to the Hopf point it does to the fold: their bars do not add.
   if (decided(apart, b.uncertainty)) return;

@@ -49,9 +49,9 @@ struct CycleMesh {
   std::array<double, 2> film{1, 1};  ///< cells of the films over those in use
 };
 
-/// The time meshes beside the one in use: half and twice the spacing or, where that cannot be, half and a quarter. Two
-/// meshes alone may agree by chance.
-[[nodiscard]] std::vector<CycleMesh> time_meshes(bool halves);
+/// The time meshes beside the one in use, if bars are wanted: half and twice the spacing or, where that cannot be, half
+/// and a quarter. Two meshes alone may agree by chance.
+[[nodiscard]] std::vector<CycleMesh> time_meshes(bool halves, const LayoutOptions& layout);
 /// Every other point of a mesh of time; empty if fewer than eight intervals would be left.
 [[nodiscard]] std::vector<double> merged(const std::vector<double>& mesh);
 

@@ -11,6 +11,7 @@
 #include "study/equilibrium/equilibrium_event.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/study/layout_options.hpp"
 
 namespace whirl::study {
 
@@ -31,7 +32,7 @@ std::vector<double> merged(const std::vector<double>& mesh) {
 }
 
 MeshLaw CycleFollower::law() const {
-  MeshLaw law = law_of(context_.machine);
+  MeshLaw law = law_of(context_.machine, context_.layout);
   law.time_order = study::order_in_time(context_.machine, order_of_scheme());
   return law;
 }
@@ -40,13 +41,14 @@ bool CycleFollower::steps_are_intervals() const {
   return options_.method == CycleBranchOptions::Method::collocation || steps_of(options_) == 1;
 }
 
-std::vector<CycleMesh> time_meshes(bool halves) {
+std::vector<CycleMesh> time_meshes(bool halves, const LayoutOptions& layout) {
+  if (layout.bars == BarsFrom::none) return {};
   return {{Axis::time, 0.5, {1, 1}}, {Axis::time, halves ? 2 : 0.25, {1, 1}}};
 }
 
 std::vector<CycleMesh> CycleFollower::meshes() const {
-  std::vector<CycleMesh> out =
-      time_meshes(steps_are_intervals() ? !merged(problem_->mesh()).empty() : steps_of(options_) % 2 == 0);
+  std::vector<CycleMesh> out = time_meshes(
+      steps_are_intervals() ? !merged(problem_->mesh()).empty() : steps_of(options_) % 2 == 0, context_.layout);
   if (system_->has_film_mesh())
     for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
       out.push_back({m.axis, m.spacing, m.factor});
@@ -128,6 +130,7 @@ void CycleFollower::judge_nearest() {
 }
 
 void CycleFollower::judge_multiplier(const Watched& at) {
+  if (!law().estimated) return;
   const double modulus = at.modulus;
   const solve::Cycle& cycle = at.cycle;
   Bars bars({modulus}, law());
@@ -278,6 +281,7 @@ std::vector<ContactThere> CycleFollower::contacts_there(const solve::Cycle& last
 }
 
 double CycleFollower::time_error(const Located& at) {
+  if (!law().estimated) return io::no_value;
   problem_ = make_problem(*system_, options_.period, at.cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(at.cycle);
   solve::LocatedEvent found;

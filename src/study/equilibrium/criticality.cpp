@@ -61,8 +61,8 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& 
   const double kappa = born->curvature * (sensitivity > 0 ? -1 : 1);
   const char* verdict = kappa < 0 ? "supercritical" : "subcritical";
   b.more["branch_curvature"] = born->curvature;
-  double error = born->error;
-  if (!asked && elsewhere) {
+  double error = law().estimated ? born->error : io::no_value;
+  if (!asked && elsewhere && law().estimated) {
     Bars bars({born->curvature}, law());
     double change = 0;
     for (const CycleMesh& mesh : meshes()) {
@@ -91,11 +91,11 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium
   solve::NewtonOptions newton = newton_;
   newton.max_iterations = 20;
   std::function<std::unique_ptr<system::Plant>()> cut;
-  if (has_shaft_mesh(context_.machine)) cut = [this] { return make_system({1, 1}, 2); };
+  if (has_shaft_mesh(context_.machine, context_.layout)) cut = [this] { return make_system({1, 1}, 2); };
   pieces_->complete("hopf bars", b, [&] {
     study::describe(
         b, {*system_, equilibrium, hopf, scale_, state_weight(), newton, film_meshes(context_.machine, context_.layout),
-            law_of(context_.machine), [this](const auto& cells) { return make_system(cells); },
+            law_of(context_.machine, context_.layout), [this](const auto& cells) { return make_system(cells); },
             [this](const auto& name, const auto& work) { return pieces_->numbers("hopf " + name, work); }, cut});
   });
   pieces_->complete("hopf criticality", b,

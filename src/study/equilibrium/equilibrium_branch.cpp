@@ -212,7 +212,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
         point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
   };
   std::function<std::unique_ptr<system::Plant>()> cut;
-  if (has_shaft_mesh(context.machine)) cut = [&] { return plant_of(context, options, {1, 1}, 2); };
+  if (has_shaft_mesh(context.machine, context.layout)) cut = [&] { return plant_of(context, options, {1, 1}, 2); };
   callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
     const bool asked = wanted(found.event, options.detect);
     changes.push_back(change_at(found, asked ? static_cast<int>(results.summary().bifurcations.size()) : -1));
@@ -227,7 +227,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                             : std::nullopt;
       if (wave) return put_mesh_wave(b, *wave);
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton,
-                   film_meshes(context.machine, context.layout), law_of(context.machine),
+                   film_meshes(context.machine, context.layout), law_of(context.machine, context.layout),
                    [&](const auto& cells) { return plant_of(context, options, cells); },
                    [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); }, cut,
                    !plan(context, Sharing::machine).large});
@@ -248,7 +248,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     }
   };
   callbacks.refine = [&](const solve::LocatedEvent& e, Vec v, Vec t) {
-    return solve::refine(*system, problem, e, v, t, to_refine(continuation.newton, law_of(context.machine)));
+    return solve::refine(*system, problem, e, v, t,
+                         to_refine(continuation.newton, law_of(context.machine, context.layout)));
   };
   if (films.exists()) {
     const auto thickness = [&](Vec v) {
@@ -300,7 +301,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   put_limits(results.summary(), verdict, changes, scale, si_unit, system->parameter_is_speed());
   if (end.limited)
     put_contact(
-        results.summary(), end.parameter, unit, end.bracket, law_of(context.machine),
+        results.summary(), end.parameter, unit, end.bracket, law_of(context.machine, context.layout),
         contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
   missed.warn(results.summary());
   bores.warn(results.summary(), unit);

@@ -143,6 +143,8 @@ void put_criticality(io::Bifurcation& b, double value, double uncertainty, const
   b.criticality = "undetermined";
   if (!std::isfinite(value)) {
     b.criticality_by = by + ": it could not be had";
+  } else if (!std::isfinite(uncertainty)) {
+    b.criticality_by = fmt::format("{}: {:.3g}, of unknown error", by, value);
   } else if (!decided(value, uncertainty)) {
     b.criticality_by = fmt::format("{}: {:.3g} +- {:.3g} may be zero", by, value, uncertainty);
   } else {
@@ -199,7 +201,8 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   if (hopf)
     put_criticality(b, here[coefficient], error, "supercritical", "subcritical",
                     "first Lyapunov coefficient (Kuznetsov 2004, 5.39)");
-  if (hopf && at.law.piecewise && b.criticality == "undetermined") decide_by_cycles(b, at, omega, elsewhere);
+  if (hopf && at.law.piecewise && at.law.estimated && b.criticality == "undetermined")
+    decide_by_cycles(b, at, omega, elsewhere);
   if (!hopf && here[coefficient] != 0)
     put_criticality(b, here[coefficient], error, "below", "above",
                     "second derivative of the parameter along the branch: the side on which the equilibria exist");

@@ -161,7 +161,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
 
 // The same on other film meshes, for the error bars.
 void put_bars(const Context& context, const system::RotorSystem& system, double speed, const std::vector<double>& x) {
-  SummaryBars bars(context.results.summary(), law_of(context.machine));
+  SummaryBars bars(context.results.summary(), law_of(context.machine, context.layout));
   for (const FilmMesh& mesh : film_meshes(context.machine, context.layout))
     bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
       system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);

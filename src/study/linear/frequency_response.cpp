@@ -203,7 +203,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "film mesh", none);
   std::vector<double> here;
   for (const std::size_t k : out.at) append(here, found[k]);
-  Bars bars(here, law_of(context.machine));
+  Bars bars(here, law_of(context.machine, context.layout));
   for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
   out.error.resize(responses);
   for (std::size_t k = 0; k < out.at.size(); ++k)

@@ -63,7 +63,7 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
                    const std::vector<SampledModes>& sampled,
                    const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at) {
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
-  const bool shaft = has_shaft_mesh(context.machine);
+  const bool shaft = has_shaft_mesh(context.machine, context.layout);
   any_ = !meshes.empty() || shaft;
   if (!any_ || sampled.empty()) return;
   // The last one is that of the shaft. Its nodes that were there before are those of the modes here.
@@ -93,7 +93,7 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   std::vector<double> here;
   for (const SampledModes& s : sampled)
     for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);
-  Bars bars(here, law_of(context.machine));
+  Bars bars(here, law_of(context.machine, context.layout));
   for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
   if (shaft) bars.add(Axis::shaft, 0.5, on_meshes.back());
   std::size_t k = 0;

@@ -82,6 +82,7 @@ void put_locations(io::StudySummary& summary, const std::vector<NamedPeak>& peak
 
 void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
                        std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve) {
+  if (!law.estimated) return;
   if (meshes.empty()) return put_locations(summary, peaks);
   const Tops tops(peaks);
   std::vector<double> speeds = tops.speeds();

@@ -356,8 +356,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   }
   if (operating_speed) put_operating(names, nodes, at_speeds({operating_speed->value}).front(), summary);
   std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
-  if (has_shaft_mesh(context.machine)) meshes.push_back(cut_shaft_mesh);
-  put_response_bars(summary, meshes, law_of(context.machine), named, put_peak,
+  if (has_shaft_mesh(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
+  put_response_bars(summary, meshes, law_of(context.machine, context.layout), named, put_peak,
                     [&](const FilmMesh& mesh, std::vector<double> at, const std::string& piece) {
                       std::optional<Responder> other;
                       if (mesh.spacing != 1) other.emplace(context, layout, options, nodes, mesh);

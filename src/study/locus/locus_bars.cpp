@@ -65,7 +65,7 @@ struct LocusFollower::Elsewhere {
 };
 
 MeshLaw LocusFollower::law() const {
-  MeshLaw law = law_of(context_.machine);
+  MeshLaw law = law_of(context_.machine, context_.layout);
   if (cycles_) {
     const solve::CycleOptions& o = cycles_->options();
     law.time_order = order_in_time(context_.machine, 2 * o.degree - (o.points == solve::Points::radau ? 1 : 0));
@@ -75,7 +75,7 @@ MeshLaw LocusFollower::law() const {
 
 std::vector<CycleMesh> LocusFollower::meshes() const {
   std::vector<CycleMesh> out;
-  if (cycles_) out = time_meshes(!merged(cycles_->mesh()).empty());
+  if (cycles_) out = time_meshes(!merged(cycles_->mesh()).empty(), context_.layout);
   if (system_->has_film_mesh())
     for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
       out.push_back({m.axis, m.spacing, m.factor});
@@ -242,7 +242,9 @@ void LocusFollower::put_bars(io::CodimensionTwo& c, Vec whole, double location) 
   const std::string name = fmt::format("codimension two {}", context_.results.summary().codimension_two.size());
   const Eigen::Vector2d reported(point.cycle.parameter / first_scale_, point.second);
   Bar first, second;
-  if (c.type == solve::generalised_flip || c.type == generalised_hopf) {
+  if (!law().estimated) {
+    first = second = error_bar(0, {}, law());
+  } else if (c.type == solve::generalised_flip || c.type == generalised_hopf) {
     // Along the curve another discretisation of the coefficient has told; what is left is how the curve itself moves.
     const auto along = pieces_->numbers(name, [&] { return direction_at(point); });
     const Eigen::Vector2d t = along.empty() ? Eigen::Vector2d(unknown, unknown) : Eigen::Vector2d(along[0], along[1]);

@@ -42,7 +42,7 @@ double Sweep::memory(const system::Machine& /*machine*/, const LayoutOptions& /*
   constexpr double kept = 4e5;
   double dearest = 0;
   for (const Variant& v : variants_)
-    for (const auto& s : v.deck->studies) dearest = std::max(dearest, s->memory(v.deck->machine, v.deck->layout));
+    for (const auto& s : v.deck->studies) dearest = std::max(dearest, s->memory(v.deck->machine, layout_of(*v.deck)));
   return dearest + kept * static_cast<double>(variants_.size());
 }
 
