@@ -3,7 +3,7 @@
 ranks. What a killed run leaves is written by rows and serves any number of ranks. A flip, the branch born there and the
 flip on finer films go the same way.
 
-spread.py PROGRAM SOURCE LAUNCHER
+spread.py PROGRAM SOURCE two|more LAUNCHER      two ranks; at night three and four of them, and groups that share intervals
 """
 import shutil
 import subprocess
@@ -15,7 +15,7 @@ import numpy
 from compare import datasets
 from harness import Harness
 
-h = Harness(sys.argv[1], sys.argv[2], sys.argv[3:])
+h = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
 SHORT = "      max_points: 3\n"
 FLIP = """      max_points: 3
       at: [325 rad/s]
@@ -84,33 +84,43 @@ def compare(one, other, studies, within):
         h.close(f"{one}, {other}: bifurcation {k + 1} [rad/s]", x["value"], y["value"], 1e-4)
 
 
-h.run(deck("one_rank"), "whole", launcher=[])
-alone = h.run(deck("all_ranks"), "alone", launcher=[])
-h.true("the flip is met and followed", [s["points"] for s in alone.values()] == [3, 3, 2], f"{[s['points'] for s in alone.values()]}")
-compare("alone", "whole", ("s", "s flip 1"), 1e-6)
-found = datasets(h.work / "alone/results.h5")
-real, imag = (found[f"studies/s/branch/multipliers_{part}"] for part in ("real", "imag"))
-h.true("multipliers that were not searched for are no numbers, and none is zero",
-       numpy.isnan(real[:, -1]).all() and not numpy.any((real == 0) & (imag == 0)), f"{real[0]}")
-# Killed within its first point, and behind it; the rest on as many ranks, with all that was left.
-h.true("two ranks: killed with a journal by rows", killed("two", 2, FLIP, "state/journal/vector 1"))
-h.true("two ranks: killed with cycles by rows", killed("two", 2, FLIP, "state/state/cycle/states"))
-shutil.copytree(h.work / "two", h.work / "one")
-for name, ranks in (("two", 2), ("one", 1)):
-    h.run(deck("all_ranks"), name, flags=["--resume"], launcher=on(ranks))
-    compare(name, "alone", ("s", "s flip 1"), 1e-7)
-    fine = [h.studies(run)["fine"]["bifurcations"][0]["value"] for run in (name, "alone")]
-    h.close(f"{name}, alone: the flip's limit of fine films [rad/s]", fine[0], fine[1], 1e-4)
-h.run(deck("all_ranks", SHORT), "branch", launcher=[])
-h.true("one rank: killed with cycles by rows", killed("three", 1, SHORT, "state/state/cycle/states"))
-h.run(deck("all_ranks", SHORT), "three", flags=["--resume"], launcher=on(3))
-compare("three", "branch", ("s",), 1e-7)
-# Groups that share the intervals, of one rank each and of two: what they leave serves them, and ranks without groups.
-h.true("two groups: killed with cycles by rows", killed("in time", 2, SHORT, "state/state/cycle/states", groups=2))
-h.true("four ranks in two groups: killed with cycles by rows", killed("both", 4, SHORT, "state/state/cycle/states", groups=2))
-for name, ranks in (("in time", 2), ("both", 1)):
-    h.run(deck("all_ranks", SHORT, 2), name, flags=["--resume"], launcher=on(ranks))
-    compare(name, "branch", ("s",), 1e-7)
-said = h.studies("in time")["s"]["layout"]
-h.true("it says so", said.startswith("intervals shared by 2 groups, a machine on each one's 1 ranks"), said)
+def two():
+    h.run(deck("one_rank"), "whole", launcher=[])
+    alone = h.run(deck("all_ranks"), "alone", launcher=[])
+    h.true("the flip is met and followed", [s["points"] for s in alone.values()] == [3, 3, 2], f"{[s['points'] for s in alone.values()]}")
+    compare("alone", "whole", ("s", "s flip 1"), 1e-6)
+    found = datasets(h.work / "alone/results.h5")
+    real, imag = (found[f"studies/s/branch/multipliers_{part}"] for part in ("real", "imag"))
+    h.true("multipliers that were not searched for are no numbers, and none is zero",
+           numpy.isnan(real[:, -1]).all() and not numpy.any((real == 0) & (imag == 0)), f"{real[0]}")
+    # Killed within its first point, and behind it; the rest on as many ranks, with all that was left.
+    h.true("two ranks: killed with a journal by rows", killed("two", 2, FLIP, "state/journal/vector 1"))
+    h.true("two ranks: killed with cycles by rows", killed("two", 2, FLIP, "state/state/cycle/states"))
+    shutil.copytree(h.work / "two", h.work / "one")
+    for name, ranks in (("two", 2), ("one", 1)):
+        h.run(deck("all_ranks"), name, flags=["--resume"], launcher=on(ranks))
+        compare(name, "alone", ("s", "s flip 1"), 1e-7)
+        fine = [h.studies(run)["fine"]["bifurcations"][0]["value"] for run in (name, "alone")]
+        h.close(f"{name}, alone: the flip's limit of fine films [rad/s]", fine[0], fine[1], 1e-4)
+
+
+def more():
+    h.run(deck("all_ranks", SHORT), "branch", launcher=[])
+    h.true("one rank: killed with cycles by rows", killed("three", 1, SHORT, "state/state/cycle/states"))
+    h.run(deck("all_ranks", SHORT), "three", flags=["--resume"], launcher=on(3))
+    compare("three", "branch", ("s",), 1e-7)
+    # Groups that share the intervals, of one rank each and of two: what they leave serves them, and ranks without groups.
+    h.true("two groups: killed with cycles by rows", killed("in time", 2, SHORT, "state/state/cycle/states", groups=2))
+    h.true("four ranks in two groups: killed with cycles by rows", killed("both", 4, SHORT, "state/state/cycle/states", groups=2))
+    for name, ranks in (("in time", 2), ("both", 1)):
+        h.run(deck("all_ranks", SHORT, 2), name, flags=["--resume"], launcher=on(ranks))
+        compare(name, "branch", ("s",), 1e-7)
+    said = h.studies("in time")["s"]["layout"]
+    h.true("it says so", said.startswith("intervals shared by 2 groups, a machine on each one's 1 ranks"), said)
+
+
+if sys.argv[3] == "two":
+    two()
+else:
+    more()
 h.finish()
