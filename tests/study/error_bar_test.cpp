@@ -77,7 +77,7 @@ TEST(ErrorBar, HoldsWhereAFeedThatMovesCancelsTheSpacing) {
 // agree to 5e-6, and both are off by 3.4e-4 (0.972015 on 160 of degree two).
 TEST(ErrorBar, LeansOnAThirdMeshWhereTwoAgreeByChance) {
   const double here = 0.97167652, true_one = 0.972015;
-  const MeshLaw law{2, 4};
+  const MeshLaw law{.film_order = 2, .time_order = 4};
   std::vector<Sample> samples{{Axis::time, 0.5, 0.97168202}};
   EXPECT_LT(error_bar(here, samples, law).total(), 0.1 * (true_one - here)) << "two meshes do not see it";
   samples.push_back({Axis::time, 0.25, 0.97208832});
@@ -87,7 +87,7 @@ TEST(ErrorBar, LeansOnAThirdMeshWhereTwoAgreeByChance) {
 // Twice the cells agree too well (an order of 9.6): the coarser mesh says by theory what is left.
 TEST(ErrorBar, BelievesNoOrderAboveTheory) {
   const std::vector<Sample> samples{{Axis::time, 2, 0.3 * 15}, {Axis::time, 0.5, -0.3 * 15 * std::exp2(-9.6)}};
-  EXPECT_GE(error_bar(0, samples, {2, 4}).total(), 0.3 * (1 - 1e-12));
+  EXPECT_GE(error_bar(0, samples, {.film_order = 2, .time_order = 4}).total(), 0.3 * (1 - 1e-12));
 }
 
 TEST(ErrorBar, OfAShaftIsThatOfOneCut) {

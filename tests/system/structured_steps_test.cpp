@@ -47,7 +47,7 @@ system::Train train(const Case& c) {
   film::testing::Elastic film;
   film.compliance = 0.1;
   film.reference_speed = speed_scale;
-  film.cells = {12, 4};
+  film.cells = {20, 4};
   film.differences = c.differences;
   film.quadrature = c.quadrature;
   film.kind = c.kind;
@@ -59,7 +59,7 @@ system::Train train(const Case& c) {
   t.supports = {s};
   if (!c.two_films) return t;
   s.name = "two";
-  film.cells = {8, 4};
+  film.cells = {14, 4};
   s.film = film;
   s.has_pedestal = true;
   for (std::size_t d = 0; d < 2; ++d) {
@@ -123,7 +123,7 @@ TEST_P(StructuredSteps, ResidualAndProductsAreThoseOfTheSparsePath) {
       options.parameter_scale = speed_scale;
       options.constant_rates = structured;
       // Explicit steps of a length at which these films are stable; long ones are stiff.
-      const int steps = !tableau.is_explicit() ? 4 : GetParam().kind == Kind::compliant_long ? 400 : 40;
+      const int steps = !tableau.is_explicit() ? 4 : GetParam().kind == Kind::compliant_long ? 1000 : 100;
       solve::NewtonPicardProblem problem(s, options, tableau, steps, mesh);
       EXPECT_EQ(problem.structured(), structured);
       core::Vector u = problem.scatter(c), row = core::duplicate(u.get()), r = core::duplicate(u.get()),
@@ -161,7 +161,7 @@ TEST_P(StructuredSteps, ShootingIsTheSameDense) {
     for (const bool structured : {false, true}) {
       solve::CycleOptions options;
       options.parameter_scale = speed_scale;
-      const int steps = !tableau.is_explicit() ? 4 : GetParam().kind == Kind::compliant_long ? 400 : 40;
+      const int steps = !tableau.is_explicit() ? 4 : GetParam().kind == Kind::compliant_long ? 1000 : 100;
       solve::ShootingProblem problem(PETSC_COMM_SELF, s, options, tableau, steps, mesh, structured);
       core::Vector u = problem.scatter(c), row = core::duplicate(u.get()), r = core::duplicate(u.get()),
                    v = core::duplicate(u.get());
