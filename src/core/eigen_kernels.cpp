@@ -1,0 +1,4 @@
+#include "core/eigen_kernels.hpp"
+
+WHIRL_EIGEN_KERNELS(template, double)
+WHIRL_EIGEN_KERNELS(template, std::complex<double>)
