@@ -7,6 +7,7 @@
 #include <regex>
 #include <sstream>
 
+#include "source_dir.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/study/deck.hpp"
 

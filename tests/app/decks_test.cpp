@@ -8,6 +8,7 @@
 #include <numbers>
 #include <regex>
 
+#include "source_dir.hpp"
 #include "support/turbine_train.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "source_dir.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/study/deck.hpp"
 

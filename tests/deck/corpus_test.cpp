@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "fuzz/target.hpp"
+#include "source_dir.hpp"
 
 TEST(Corpus, IsReadOrRefused) {
   int n = 0;

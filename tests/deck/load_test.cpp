@@ -1,6 +1,7 @@
 // From files and arguments to one tree: YAML, tables, bases, overrides.
 
 #include "whirl/deck/load.hpp"
+#include "source_dir.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

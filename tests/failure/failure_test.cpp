@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "source_dir.hpp"
 #include "whirl/study/deck.hpp"
 
 namespace {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "film/cases.hpp"
+#include "source_dir.hpp"
 #include "whirl/film/turbulence.hpp"
 
 namespace whirl::film::testing {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "rigid_rotor/run_deck.hpp"
+#include "source_dir.hpp"
 
 namespace {
 

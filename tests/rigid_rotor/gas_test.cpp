@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rigid_rotor/run_deck.hpp"
+#include "source_dir.hpp"
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "source_dir.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/io/hdf5.hpp"
 #include "whirl/io/summary.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rigid_rotor/run_deck.hpp"
+#include "source_dir.hpp"
 #include "whirl/study/convergence/mesh_convergence.hpp"
 
 namespace {

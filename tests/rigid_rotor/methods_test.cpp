@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "rigid_rotor/run_deck.hpp"
+#include "source_dir.hpp"
 
 namespace {
 

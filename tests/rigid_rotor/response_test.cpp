@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "rigid_rotor/run_deck.hpp"
+#include "source_dir.hpp"
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "rigid_rotor/run_deck.hpp"
+#include "source_dir.hpp"
 
 namespace {
 

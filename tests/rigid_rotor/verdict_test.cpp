@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "rigid_rotor/run_deck.hpp"
+#include "source_dir.hpp"
 #include "whirl/core/error.hpp"
 
 namespace {

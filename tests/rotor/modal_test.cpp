@@ -10,6 +10,7 @@
 #include <string>
 
 #include "rotor/shafts.hpp"
+#include "source_dir.hpp"
 #include "support/dense.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/rotor.hpp"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "source_dir.hpp"
 #include "study/cost.hpp"
 #include "study/layout.hpp"
 #include "whirl/film/options.hpp"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "source_dir.hpp"
 #include "study/job_queue.hpp"
 #include "study/sweep/sweep_table.hpp"
 #include "whirl/core/agree.hpp"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "source_dir.hpp"
 #include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/options.hpp"
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "source_dir.hpp"
+
 namespace whirl::reference::trial_rotor {
 
 /// The ten lowest whirl frequencies at one speed, rad/s by ascending modulus, signed: negative backward. At rest each
