@@ -64,7 +64,8 @@ std::vector<std::size_t> few_of(std::size_t n) {
 // One task is one mesh at all these speeds, each from its neighbour.
 ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
                    const std::vector<SampledModes>& sampled,
-                   const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at) {
+                   const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at)
+    : resolved_to_(resolved_to(context.machine.rotor)) {
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   const bool shaft = has_shaft_mesh(context.machine, context.layout);
   any_ = !meshes.empty() || shaft;
