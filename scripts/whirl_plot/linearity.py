@@ -56,7 +56,8 @@ def draw_transfer(study):
     grid[0][0].set_ylabel("|H1| [m/N]")
     grid[1][0].set_ylabel("phase [deg]")
     handles = [Line2D([], [], color=c, label=label) for _, c, label in levels_of(study)]
-    handles.append(Line2D([], [], color=INK, linestyle=DASHED, label="linearised film"))
+    about = {"unstable": ", about an unstable equilibrium", "undetermined": ", about an equilibrium that may be unstable"}
+    handles.append(Line2D([], [], color=INK, linestyle=DASHED, label="linearised film" + about.get(study.summary.get("stability"), "")))
     note = (f"bands: the true value, with a probability of {study.attribute('probability'):g}; "
             f"{study.attribute('averages'):.1f} independent averages; shaded: resonance; speed {study.attribute('speed'):.6g} rad/s")
     return save(figure, study, "transfer", note, handles)

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "branch_state.hpp"
 #include "first_guess.hpp"
+#include "study/bars/unresolved.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -138,8 +140,11 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   std::vector<std::complex<double>> values;
   std::map<double, double> rounding;  // by real part: that of the values that are nearly undamped
   int neutral = 0;
+  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
+  const double limit = rotor ? resolved_to(rotor->train().rotor) : std::numeric_limits<double>::infinity();
   const solve::MachineModes found = solve::machine_modes(system, x, options);
   for (const auto& mode : found.modes) {
+    if (mode.lambda.real() > 0 && is_of_elements(mode.lambda, limit)) continue;
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
     if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;

@@ -43,6 +43,26 @@ Growth growth_at(system::Plant& system, Vec x) {
   return growth_of(equilibrium_stability(system, x));
 }
 
+std::vector<double> packed(const Growth& growth) {
+  std::vector<double> out{static_cast<double>(growth.missed), static_cast<double>(growth.real.size())};
+  out.insert(out.end(), growth.real.begin(), growth.real.end());
+  for (const std::complex<double>& s : growth.pairs) out.insert(out.end(), {s.real(), s.imag()});
+  return out;
+}
+
+void put_growth(const std::vector<double>& packed, const std::string& where, const std::string& consequence,
+                io::StudySummary& summary) {
+  summary.stability = "undetermined";
+  if (packed.empty()) return;
+  Growth growth;
+  growth.missed = static_cast<int>(packed[0]);
+  const auto pairs = packed.begin() + 2 + static_cast<std::ptrdiff_t>(packed[1]);
+  growth.real.assign(packed.begin() + 2, pairs);
+  for (auto at = pairs; at != packed.end(); at += 2) growth.pairs.emplace_back(at[0], at[1]);
+  if (growth.any() || growth.missed == 0) summary.stability = growth.any() ? "unstable" : "stable";
+  warn_of(growth, where, consequence, summary);
+}
+
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence,
              io::StudySummary& summary) {
   if (!growth.any()) return;

@@ -33,6 +33,12 @@ struct Growth {
 /// Of the equilibrium x at the system's parameter. Cost: one eigenvalue problem without vectors. Collective; throws
 /// core::NotConverged.
 [[nodiscard]] Growth growth_at(system::Plant& system, Vec x);
+/// As numbers that ranks and pieces of a checkpoint hold.
+[[nodiscard]] std::vector<double> packed(const Growth& growth);
+/// Verdict of a linear study at one speed, "stable", "unstable" or "undetermined" (nothing is known, or eigenvalues may
+/// be missing), from packed(); with warn_of() its warning.
+void put_growth(const std::vector<double>& packed, const std::string& where, const std::string& consequence,
+                io::StudySummary& summary);
 /// Adds the warning "WHERE the equilibrium is unstable: ..., CONSEQUENCE" if something grows; `where` as "at 3600 rpm".
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence, io::StudySummary& summary);
 

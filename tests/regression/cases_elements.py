@@ -6,6 +6,8 @@ cases_elements.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 import math
 import sys
 
+import h5py
+import numpy as np
 from harness import Harness, value
 
 HZ = 2 * math.pi
@@ -42,6 +44,15 @@ def pump(h):
     empty, two = (h.run(deck(h, d), n, o, launcher=[])["modes"]["modes"] for d, n, o in (("feed_pump_elements", "empty", [only, *none]), ("feed_pump_bare", "two bearings", [only])))
     for a, b in zip(empty, two, strict=True):
         same(h, "modes without coefficients", a["imag"], b["imag"], 1e-6)
+    def shapes(run):
+        """Complex motion (x, y) of the nodes in each mode, of length one."""
+        with h5py.File(h.work / run / "results.h5") as f:
+            g = f["studies/modes/shapes"]
+            z = np.hstack([g[f"{axis}_real"][()] + 1j * g[f"{axis}_imag"][()] for axis in "xy"])
+        return z / np.linalg.norm(z, axis=1)[:, None]
+    alike = lambda a, b: np.abs(np.sum(shapes(a).conj()[:4] * shapes(b)[:4], axis=1))  # noqa: E731
+    h.true("the shapes of the modes without coefficients are those in two bearings", np.all(alike("empty", "two bearings") > 1 - 1e-6), str(alike("empty", "two bearings")))
+    h.true("with seals they are others", np.any(alike("elements", "two bearings") < 0.99), str(alike("elements", "two bearings")))
     h.true("modes with seals differ", all(abs(a["imag"] - b["imag"]) > 1 for a, b in zip(s["modes"]["modes"], two)))
     for ranks in ("2", "3"):
         few = "studies=[{static: {name: at speed, speed: 5000 rpm}}, {modes: {name: modes, speeds: [5000 rpm], count: 4}}]"
@@ -89,7 +100,21 @@ def vertical(h):
         same(h, "frequency [rad/s]", a["imag"], b["imag"], 1e-3)
 
 
-CASES = {"pump": pump, "level_1": level_1, "node": node, "vertical": vertical}
+def of_elements(h):
+    """A shaft without damping of its own: two vibrations of its elements at 26.6 kHz grow by 1e-10 of their frequency. They decide on nothing."""
+    Q = "elements={Q: {node: 12, role: other, static_load: false, cross_coupling: %s N/m}}"
+    studies = ("studies=[{modes: {name: m, speeds: [7500 rpm], count: 4}}, {static: {name: s, speed: 7500 rpm}}, {equilibrium_branch: {name: b, parameter: speed, "
+               "range: {from: 7400 rpm, to: 7500 rpm}}}]")
+    for cross, grows in (("0.5e6", False), ("2e6", True)):
+        s = h.run(deck(h, "steam_turbine"), f"cross {cross}", [Q % cross, studies], launcher=[])
+        fast = [m for m in s["m"]["modes"] if m["imag"] > 1e5]
+        h.true(f"{cross} N/m: those at 26.6 kHz are undetermined", len(fast) == 2 and all(m["stability"] == "undetermined" for m in fast), str(fast))
+        h.true("the modes, the place at rest and the branch agree", (s["m"]["values"]["at.7500.unstable"]["value"] > 0) == grows
+               and any("unstable" in w for w in s["s"].get("warnings", [])) == grows and s["b"]["stability"] == ("unstable throughout" if grows else "stable throughout"),
+               f"{s['s'].get('warnings')} {s['b']['stability']}")
+
+
+CASES = {"of_elements": of_elements, "pump": pump, "level_1": level_1, "node": node, "vertical": vertical}
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])

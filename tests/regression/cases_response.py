@@ -47,6 +47,9 @@ def always_unstable(h):
     transfer = "studies=[{frequency_response: {name: t, speed: 4000 rpm, inputs: [{node: 3, direction: x}], range: {from: 10 rad/s, to: 500 rad/s}, points: 20}}]"
     s = h.run(h.source / "tests/cases/always_unstable.yaml", "transfer", [transfer])["t"]
     h.true("transfer functions know it", s["stability"] == "unstable" and warned(s, "at 4000 rpm the equilibrium is unstable", "No vibration settles"), str(s.get("warnings")))
+    s = h.run(h.source / "tests/cases/always_unstable.yaml", "linearity", ["studies=[{linearity: {name: l, speed: 400 rpm, node: 3, levels: [1 N], cutoff: 300 Hz, "
+              "highest: 100 Hz, duration: 0.5 s, segments: 4, settle: 0.02 s}}]"])["l"]
+    h.true("so does linearity", s["stability"] == "unstable" and warned(s, "at 400 rpm the equilibrium is unstable", "that the motion is compared with"), str(s.get("warnings")))
     # Damped evenly the springs that are coupled across bring no instability.
     s = h.run(h.source / "tests/cases/always_unstable.yaml", "damped", [transfer, "bearings.*.film.damping=2e4 N s/m"])["t"]
     h.true("damped, it is stable", s["stability"] == "stable" and not s.get("warnings"), f"{s['stability']} {s.get('warnings')}")

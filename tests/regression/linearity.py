@@ -139,6 +139,7 @@ def short(h):
     """A short record: the linear functions against K + i w B, coherence and bounds, its fall with the force, two ranks."""
     deck = h.source / "inputs/aerostatic/linearity.yaml"
     study = h.run(deck, "short", SHORT, launcher=[])["short"]
+    h.true("the equilibrium is known to be stable", study["stability"] == "stable" and not any("unstable" in w for w in study.get("warnings", [])), study["stability"])
     t = tables(h, "short", "short")
     # (3.43), with K and B at each frequency.
     lines = [0, 10, 25, 40, 55]

@@ -47,6 +47,16 @@ TEST(Growth, CountsRealAndComplexEigenvalues) {
       g.words(),
       "it diverges (s = +7 1/s, the fastest of 3 real eigenvalues), and an oscillation grows (10 Hz, log decrement "
       "-0.2)");
+  io::StudySummary told, missed, silent;
+  study::put_growth(study::packed(g), "at 1 rpm", "The end", told);
+  EXPECT_EQ(told.stability, "unstable");
+  EXPECT_EQ(told.warnings, std::vector{"at 1 rpm the equilibrium is unstable: " + g.words() + ". The end"});
+  study::Growth some = growth({{-3, 0}});
+  some.missed = 1;
+  study::put_growth(study::packed(some), "", "", missed);
+  study::put_growth({}, "", "", silent);
+  EXPECT_EQ(missed.stability, "undetermined");
+  EXPECT_EQ(silent.stability, "undetermined");
   const auto none = growth({{-3, 0}, {-1, 4}, {-1, -4}});
   EXPECT_TRUE(none.stable());
   EXPECT_EQ(none.words(), "");

@@ -5,13 +5,11 @@
 
 namespace whirl::rotor {
 
-/// The node of a divided shaft at the place of `node`; both 1-based.
-[[nodiscard]] constexpr int node_after(int node, int parts) {
-  return (node - 1) * parts + 1;
-}
+/// The node of divided(whole, parts) at the place of `node` of `whole`; both 1-based.
+[[nodiscard]] int node_after(const Options& whole, int node, int parts);
 
-/// The shaft with every segment cut into `parts` equal ones; discs, hubs, masters and joints stay where they were. A
-/// rigid rotor is itself. core::Bug of a shaft with couplings.
+/// The shaft with every beam cut into `parts` equal ones; couplings, discs, hubs, masters and joints stay where they
+/// were. A rigid rotor is itself.
 [[nodiscard]] Options divided(Options options, int parts);
 
 }  // namespace whirl::rotor

@@ -1,5 +1,11 @@
 #include "study/bars/shaft_mesh.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "whirl/deck/codecs.hpp"
+#include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/divide.hpp"
 #include "whirl/study/layout_options.hpp"
 
@@ -11,19 +17,30 @@ double order_of_shaft(rotor::Element element) {
 
 bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout) {
   return layout.bars == BarsFrom::meshes && system::is_rotor(machine) &&
-         machine.rotor.type == rotor::Options::Type::shaft && machine.rotor.couplings.empty();
+         machine.rotor.type == rotor::Options::Type::shaft;
+}
+
+void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout) {
+  if (!has_shaft_mesh(machine, layout) || machine.rotor.reduction.type == rotor::Reduction::Type::guyan) return;
+  const auto lacks = [](const io::Bifurcation& b) { return !b.more.contains("uncertainty_shaft_mesh"); };
+  if (std::ranges::none_of(summary.bifurcations, lacks)) return;
+  summary.warnings.push_back(fmt::format(
+      "bars without 'uncertainty_shaft_mesh' leave out what the {} elements of the shaft (rotor.element {}) "
+      "are off by; `element_convergence` and `modes` show it",
+      machine.rotor.segments.size(), deck::name_of(machine.rotor.element)));
 }
 
 system::Train with_cut_shaft(system::Train train, int parts) {
   if (parts == 1) return train;
+  const auto after = [whole = train.rotor, parts](int node) { return rotor::node_after(whole, node, parts); };
   train.rotor = rotor::divided(train.rotor, parts);
-  for (system::Support& s : train.supports) s.node = rotor::node_after(s.node, parts);
-  for (system::StaticLoad& l : train.loads) l.node = rotor::node_after(l.node, parts);
+  for (system::Support& s : train.supports) s.node = after(s.node);
+  for (system::StaticLoad& l : train.loads) l.node = after(l.node);
   for (system::Element& e : train.elements) {
-    e.node = rotor::node_after(e.node, parts);
-    if (e.to_node) e.to_node = rotor::node_after(*e.to_node, parts);
+    e.node = after(e.node);
+    if (e.to_node) e.to_node = after(*e.to_node);
   }
-  for (system::UnbalanceMass& u : train.unbalance) u.node = rotor::node_after(u.node, parts);
+  for (system::UnbalanceMass& u : train.unbalance) u.node = after(u.node);
   return train;
 }
 

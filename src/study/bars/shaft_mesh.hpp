@@ -2,6 +2,7 @@
 // The mesh of the shaft beside the one in use: every segment cut into shorter elements.
 
 #include "study/bars/film_mesh.hpp"
+#include "whirl/io/summary.hpp"
 #include "whirl/system/options.hpp"
 #include "whirl/system/train.hpp"
 
@@ -11,7 +12,7 @@ namespace whirl::study {
 /// angle is that of the static solution. Source: the elements' table (room rotor), measured.
 [[nodiscard]] double order_of_shaft(rotor::Element element);
 
-/// Whether bars are wanted, and the machine has a shaft of beams that can be cut: a shaft with couplings cannot.
+/// Whether bars are wanted, and the machine has a shaft of beams.
 [[nodiscard]] bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout);
 
 /// The mesh of with_cut_shaft(train, 2) among those that bars stand on.
@@ -21,7 +22,11 @@ inline const FilmMesh cut_shaft_mesh{Axis::shaft, {1, 1}, 0.5};
   return mesh.axis == Axis::shaft ? 2 : 1;
 }
 
-/// The train with every segment of its shaft cut into `parts` equal ones; what stands at nodes stays in its place.
+/// Warns of bifurcations in the summary whose bars leave out the mesh of the shaft. None of a shaft with static
+/// reduction: elements at rest are exact, so that shafts of shorter elements have the same reduced matrices.
+void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout);
+
+/// The train with every beam of its shaft cut into `parts` equal ones; what stands at nodes stays in its place.
 [[nodiscard]] system::Train with_cut_shaft(system::Train train, int parts);
 
 }  // namespace whirl::study

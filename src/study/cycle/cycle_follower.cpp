@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "study/bars/open_bore.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
 #include "study/cycle/coexisting.hpp"
@@ -282,6 +283,7 @@ StudyResult CycleFollower::run() {
   for (const BranchChange& c : changes_) verdict.add(c);
   doubt(verdict);
   conclude(results.summary(), verdict, kind(), unit_);
+  warn_without_shaft_mesh(results.summary(), context_.machine, context_.layout);
   if (OpenBores bores(context_.machine); !bores.empty()) {
     record_.for_samples(
         [&](std::size_t place, double x, double y, double parameter) { bores.see(place, x, y, parameter); });

@@ -303,6 +303,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     put_contact(
         results.summary(), end.parameter, unit, end.bracket, law_of(context.machine, context.layout),
         contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
+  warn_without_shaft_mesh(results.summary(), context.machine, context.layout);
   missed.warn(results.summary());
   bores.warn(results.summary(), unit);
   results.summary().points = end.points;

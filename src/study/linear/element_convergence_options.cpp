@@ -33,7 +33,6 @@ void ElementConvergence::validate(const system::Machine& machine, const deck::Re
     if (machine.rotor.shear == rotor::Shear::rigid && options.elements[i] != rotor::Element::rayleigh &&
         options.elements[i] != rotor::Element::timoshenko)
       report.fail(fmt::format("elements.{}", i + 1), "a shaft whose sections are rigid in shear has no such element");
-  if (!machine.rotor.couplings.empty()) report.fail("", "a shaft with couplings is not cut into shorter elements");
   if (machine.rotor.reduction.type != rotor::Reduction::Type::none)
     report.fail("",
                 "the shaft is reduced, whose errors would be counted as those of the elements: "

@@ -89,17 +89,9 @@ public:
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
-  // What grows about the equilibrium: real parts, then pairs, behind the numbers of missed and of real ones; nothing if
-  // that could not be computed.
+  // What grows about the equilibrium, packed; nothing if that could not be computed.
   std::vector<double> growing() {
-    std::vector<double> out;
-    (void)has_answer([&] {
-      const Growth growth = growth_at(system_, walker_.at(options_.speed.value));
-      out = {static_cast<double>(growth.missed), static_cast<double>(growth.real.size())};
-      out.insert(out.end(), growth.real.begin(), growth.real.end());
-      append(out, growth.pairs);
-    });
-    return out;
+    return answer_of([&] { return packed(growth_at(system_, walker_.at(options_.speed.value))); });
   }
 
 private:
@@ -214,22 +206,6 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   return out;
 }
 
-// The verdict on the equilibrium from what Transfers::growing() found, and a warning where something grows.
-void put_growth(const std::vector<double>& found, const std::string& where, io::StudySummary& summary) {
-  summary.stability = "undetermined";
-  if (found.empty()) return;
-  Growth growth;
-  growth.missed = static_cast<int>(found[0]);
-  const auto real = static_cast<std::size_t>(found[1]);
-  for (std::size_t k = 2; k < found.size(); k += k < 2 + real ? 1 : 2)
-    if (k < 2 + real)
-      growth.real.push_back(found[k]);
-    else
-      growth.pairs.emplace_back(found[k], found[k + 1]);
-  if (growth.any() || growth.missed == 0) summary.stability = growth.any() ? "unstable" : "stable";
-  warn_of(growth, where, "No vibration settles into these transfer functions", summary);
-}
-
 }  // namespace
 
 StudyResult FrequencyResponse::run(Context& context) {
@@ -277,7 +253,7 @@ StudyResult FrequencyResponse::run(Context& context) {
     const auto compute = [&](std::size_t) { return machine.growing(); };
     put_growth(distribute(layout, 1, compute, pieces, "stability", machine.trail()).front(),
                fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
-               summary);
+               "No vibration settles into these transfer functions", summary);
   }
   const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0]);
 

@@ -13,6 +13,8 @@
 #include "study/common.hpp"
 #include "whirl/deck/codecs.hpp"
 #include "whirl/rotor/describe.hpp"
+#include "whirl/rotor/divide.hpp"
+#include "whirl/rotor/shaft.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
@@ -40,12 +42,13 @@ std::vector<double> paired(const std::vector<spectral::ModePoint>& here,
   return out;
 }
 
-// A shape at the nodes of a shaft whose segments were cut in two, at those that were there before: x, then y.
-std::vector<std::complex<double>> every_second(const std::vector<std::complex<double>>& shape) {
+// A shape at the nodes of a shaft whose beams were cut in two, at those of the `whole` one: x, then y.
+std::vector<std::complex<double>> at_nodes_of(const rotor::Options& whole,
+                                              const std::vector<std::complex<double>>& shape) {
   std::vector<std::complex<double>> out;
-  const std::size_t nodes = shape.size() / 2;
   for (std::size_t d = 0; d < 2; ++d)
-    for (std::size_t k = 0; k < nodes; k += 2) out.push_back(shape[d * nodes + k]);
+    for (int node = 1; node <= rotor::n_nodes(whole); ++node)
+      out.push_back(shape[d * shape.size() / 2 + static_cast<std::size_t>(rotor::node_after(whole, node, 2) - 1)]);
   return out;
 }
 
@@ -61,7 +64,8 @@ std::vector<std::size_t> few_of(std::size_t n) {
 // One task is one mesh at all these speeds, each from its neighbour.
 ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
                    const std::vector<SampledModes>& sampled,
-                   const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at) {
+                   const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at)
+    : resolved_to_(resolved_to(context.machine.rotor)) {
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   const bool shaft = has_shaft_mesh(context.machine, context.layout);
   any_ = !meshes.empty() || shaft;
@@ -79,7 +83,7 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
       for (const SampledModes& s : sampled) {
         auto other = modes_at(there, walker.at(s.speed));
         if (of_shaft)
-          for (spectral::ModePoint& m : other) m.shape = every_second(m.shape);
+          for (spectral::ModePoint& m : other) m.shape = at_nodes_of(given.rotor, m.shape);
         const auto numbers = paired(s.modes, other);
         all.insert(all.end(), numbers.begin(), numbers.end());
       }

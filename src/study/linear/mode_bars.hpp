@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "study/bars/unresolved.hpp"
 #include "study/layout.hpp"
 #include "study/pieces.hpp"
 #include "whirl/spectral/follow.hpp"
@@ -40,6 +41,8 @@ public:
   /// The largest error of a frequency by the mesh of the shaft as "shaft_mesh.largest_error" [1], with a warning above
   /// one per cent that names the element.
   void tell_shaft(io::StudySummary& summary, const rotor::Options& rotor) const;
+  /// Whether a mode that grows is a vibration of the elements of the shaft.
+  [[nodiscard]] bool of_elements(std::complex<double> lambda) const { return is_of_elements(lambda, resolved_to_); }
   /// Whether films or shaft have a mesh.
   [[nodiscard]] bool any() const { return any_; }
   // All of these give nothing where neither films nor shaft have a mesh.
@@ -56,6 +59,7 @@ private:
   };
   std::map<int, std::vector<Point>> of_;
   bool any_ = false;
+  double resolved_to_;      // [rad/s], by the mesh of the shaft
   double shaft_error_ = 0;  // zero: not known
 };
 

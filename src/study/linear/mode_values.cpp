@@ -26,7 +26,7 @@ std::string joined(const std::vector<std::string>& words) {
 }  // namespace
 
 bool surely_grows(const ShaftMode& mode, double speed, const ModeBars& bars) {
-  if (!mode.grows()) return false;
+  if (!mode.grows() || bars.of_elements(mode.lambda)) return false;
   const double bar = bars.at(mode.id, speed)[0];
   return std::isfinite(bar) ? mode.lambda.real() > bar : !(mode.extra && bars.any());
 }

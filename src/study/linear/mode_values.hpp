@@ -12,9 +12,9 @@
 
 namespace whirl::study {
 
-/// Whether a mode that grows does so for sure: its real part exceeds its bar. A mode that is listed for its growth
-/// alone and has no counterpart on the other meshes is one of the mesh: a shaft without damping of its own has the
-/// fastest vibrations of its elements on either side of the border by next to nothing.
+/// Whether a mode that grows does so for sure: it is no vibration of the elements (unresolved.hpp, which equilibria ask
+/// as well), and its real part exceeds its bar. A mode that is listed for its growth alone and has no counterpart on
+/// the other meshes is one of the mesh.
 [[nodiscard]] bool surely_grows(const ShaftMode& mode, double speed, const ModeBars& bars);
 /// "stable", "undamped", "unstable", "undetermined", or "diverges" of a real eigenvalue above zero.
 [[nodiscard]] const char* stability_of(const ShaftMode& mode, double speed, const ModeBars& bars);

@@ -63,7 +63,7 @@ public:
         walker_(system_),
         solver_(system_),
         nodes_(std::move(nodes)) {
-    for (int& node : nodes_) node = rotor::node_after(node, parts_of(mesh));
+    for (int& node : nodes_) node = rotor::node_after(context.machine.rotor, node, parts_of(mesh));
   }
 
   Response at(double speed) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "study/common.hpp"
+#include "study/growth.hpp"
 #include "study/motion/linearity_run.hpp"
 #include "study/pieces.hpp"
 
@@ -30,6 +31,14 @@ StudyResult Linearity::run(Context& context) {
   const auto linear = distribute(
       layout, lines, [&](std::size_t k) { return runner.linear(resolution * (static_cast<double>(k) + 1)); }, pieces,
       "line", nothing);
+  // Equilibria know of no loss factor: of such shafts nothing is asked.
+  if (context.machine.rotor.loss_factor == 0)
+    put_growth(distribute(
+                   layout, 1, [&](std::size_t) { return runner.growing(); }, pieces, "stability", nothing)
+                   .front(),
+               fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
+               "No vibration settles into the linear transfer functions that the motion is compared with",
+               results.summary());
   put_linearity(context, options, records, linear, runner.node());
   results.summary().points = static_cast<long>(lines);
   return results.finish("completed", true);

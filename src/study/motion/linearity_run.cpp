@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/bars/summary_bars.hpp"
+#include "study/growth.hpp"
 #include "study/make_plant.hpp"
 #include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
@@ -165,6 +167,10 @@ std::vector<double> LinearityRunner::linear(double frequency) {
     }
   }
   return out;
+}
+
+std::vector<double> LinearityRunner::growing() {
+  return answer_of([&] { return packed(growth_at(system_, rest_.get())); });
 }
 
 }  // namespace whirl::study

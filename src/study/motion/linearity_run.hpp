@@ -39,6 +39,8 @@ public:
   [[nodiscard]] static LinearityRecord unpack(const std::vector<double>& flat, const LinearityOptions& options);
   /// Displacement i by force j about the equilibrium at `frequency` [Hz]: re, im of xx, xy, yx, yy [m/N].
   [[nodiscard]] std::vector<double> linear(double frequency);
+  /// What grows about the equilibrium, as packed(); empty if that could not be computed.
+  [[nodiscard]] std::vector<double> growing();
   [[nodiscard]] int node() const { return node_; }
 
 private:

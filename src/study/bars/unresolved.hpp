@@ -1,0 +1,21 @@
+#pragma once
+// Vibrations of the elements of a shaft that its mesh does not resolve.
+
+#include <complex>
+
+#include "whirl/rotor/options.hpp"
+
+namespace whirl::study {
+
+/// Angular frequency [rad/s] above which the longest waves in some beam of the shaft have no node on it: the lowest
+/// (pi/L)^2 (E I/m')^(1/2), that of a beam of the length L of an element on two pins. Infinite without beams.
+[[nodiscard]] double resolved_to(const rotor::Options& shaft);
+
+/// Whether an eigenvalue that grows is a vibration of the elements: above resolved_to(), and its growth is less than
+/// 1e-6 of its frequency, far less than what the mesh leaves in it.
+///
+/// A shaft without damping of its own has such vibrations on either side of the border of stability by next to nothing:
+/// they decide on no verdict. With every segment cut they are others.
+[[nodiscard]] bool is_of_elements(std::complex<double> lambda, double resolved_to);
+
+}  // namespace whirl::study
