@@ -21,6 +21,7 @@
 #include "study/first_guess.hpp"
 #include "study/layout.hpp"
 #include "study/located.hpp"
+#include "study/locus/curve_points.hpp"
 #include "study/make_plant.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
@@ -54,15 +55,16 @@ namespace {
 
 // Where the branch comes to its contact at `place` on other film meshes; `whole` is its last equilibrium.
 std::vector<ContactThere> contacts_there(const Context& context, const EquilibriumBranchOptions& options,
-                                         const system::Plant& system, const std::vector<double>& whole, double place,
-                                         double scale, const MarginSlope& here, const solve::NewtonOptions& newton) {
+                                         const system::Plant& system, const std::vector<CurvePoint>& points,
+                                         double place, double scale, const MarginSlope& here,
+                                         const solve::NewtonOptions& newton) {
   std::vector<ContactThere> out;
   for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
     out.push_back({mesh.axis, mesh.spacing, io::no_value});
     const auto other = plant_of(context, options, mesh.factor);
     const FilmLimit films(other->places());
-    core::Vector x = resampled(*other, system, whole);
-    out.back().place = contact_there(place, here, [&](double parameter) {
+    core::Vector x;  // the solution found last
+    const auto margin_from = [&](core::Vector trial) {
       double margin = unknown;
       (void)has_answer([&] {
         other->set_parameter(parameter * scale);
@@ -71,6 +73,22 @@ std::vector<ContactThere> contacts_there(const Context& context, const Equilibri
         if (!solve::find_equilibrium(*other, trial.get(), newton).converged) return;
         margin = films.margin(other->observe(trial.get()).film_thickness);
         std::swap(x, trial);
+    };
+    out.back().place = contact_there(place, here, [&](double parameter) {
+      other->set_parameter(parameter * scale);
+      double margin = unknown;
+      if (x) {
+        core::Vector trial = core::duplicate(x.get());
+        check(VecCopy(x.get(), trial.get()));
+        margin = margin_from(std::move(trial));
+      }
+      if (std::isfinite(margin)) return margin;
+      // Where this mesh touches, that solution is none of the other's: the nearest of the branch may be.
+      const auto& nearest = *std::min_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+        return std::abs(a.cycle.parameter - parameter) < std::abs(b.cycle.parameter - parameter);
+      });
+      const Eigen::MatrixXd& known = nearest.cycle.x;
+      return margin_from(resampled(*other, system, std::vector<double>(known.data(), known.data() + known.size())));
       });
       return margin;
     });
@@ -163,6 +181,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   std::vector<Located> located;  // one for each bifurcation of the summary
   std::vector<BranchChange> changes;
   BranchVerdict verdict;
+  SpreadPoints spread(8);  // for the searches for a contact
+  double arclength = 0;
   const FilmLimit films(places);
   OpenBores bores(context.machine);
   MarginSlope margins;
@@ -189,6 +209,18 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
       bores.see(px.size(), j.position[0], j.position[1], point.parameter);
       px.push_back(j.position[0]);
       py.push_back(j.position[1]);
+    }
+    arclength += point.step;
+    if (films.exists()) {
+      const std::vector<double> whole = system->gather(x.get());
+      spread.add({{{0, 1},
+                   Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
+                   0,
+                   point.parameter},
+                  {},
+                  0,
+                  arclength,
+                  static_cast<std::size_t>(point.index)});
     }
     const auto& s = point.stability;
     margins.add(point.parameter, films.margin(seen.film_thickness));
@@ -262,8 +294,6 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
   };
   const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
-  std::vector<double> at_limit;  // the last point
-  if (end.limited) at_limit = system->gather(x.get());
   if (options.parameter.deflation) {
     system->set_parameter(range.from);
     const auto others = put_solutions(results.group(), results.summary(), [&] {
@@ -301,7 +331,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   if (end.limited)
     put_contact(
         results.summary(), end.parameter, unit, end.bracket, law_of(context.machine),
-        contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
+        contacts_there(context, options, *system, spread.all(), end.parameter, scale, margins, continuation.newton));
   missed.warn(results.summary());
   bores.warn(results.summary(), unit);
   results.summary().points = end.points;
