@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "study/bars/mesh_wave.hpp"
 #include "study/common.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -27,6 +28,7 @@ Growth growth_of(const solve::Stability& stability) {
   Growth out;
   out.undamped = stability.neutral;
   out.missed = stability.missed;
+  out.mesh_waves = stability.mesh_waves;
   // By falling distance from the border of stability, so the fastest come first.
   for (std::size_t k = 0; k < stability.values.size() && stability.distance[k] > 0; ++k) {
     const std::complex<double> s = stability.values[k];
@@ -45,8 +47,15 @@ Growth growth_at(system::Plant& system, Vec x) {
 
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence,
              io::StudySummary& summary) {
+  warn_of_waves(growth, where, summary);
   if (!growth.any()) return;
   summary.warnings.push_back(fmt::format("{} the equilibrium is unstable: {}. {}", where, growth.words(), consequence));
+}
+
+void warn_of_waves(const Growth& growth, const std::string& where, io::StudySummary& summary) {
+  MeshWaves waves;
+  waves.add(0, growth.mesh_waves);
+  waves.warn(summary, {}, where);
 }
 
 }  // namespace whirl::study

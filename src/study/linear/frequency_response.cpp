@@ -89,14 +89,16 @@ public:
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
-  // What grows about the equilibrium: real parts, then pairs, behind the numbers of missed and of real ones; nothing if
-  // that could not be computed.
+  // What grows about the equilibrium: real parts, waves of the mesh, then pairs, behind the numbers of missed, of real
+  // ones and of waves; nothing if that could not be computed.
   std::vector<double> growing() {
     std::vector<double> out;
     (void)has_answer([&] {
       const Growth growth = growth_at(system_, walker_.at(options_.speed.value));
-      out = {static_cast<double>(growth.missed), static_cast<double>(growth.real.size())};
+      out = {static_cast<double>(growth.missed), static_cast<double>(growth.real.size()),
+             static_cast<double>(growth.mesh_waves.size())};
       out.insert(out.end(), growth.real.begin(), growth.real.end());
+      append(out, growth.mesh_waves);
       append(out, growth.pairs);
     });
     return out;
@@ -220,13 +222,12 @@ void put_growth(const std::vector<double>& found, const std::string& where, io::
   if (found.empty()) return;
   Growth growth;
   growth.missed = static_cast<int>(found[0]);
-  const auto real = static_cast<std::size_t>(found[1]);
-  for (std::size_t k = 2; k < found.size(); k += k < 2 + real ? 1 : 2)
-    if (k < 2 + real)
-      growth.real.push_back(found[k]);
-    else
-      growth.pairs.emplace_back(found[k], found[k + 1]);
-  if (growth.any() || growth.missed == 0) summary.stability = growth.any() ? "unstable" : "stable";
+  const auto real = static_cast<std::size_t>(found[1]), waves = static_cast<std::size_t>(found[2]);
+  std::size_t k = 3;
+  while (growth.real.size() < real) growth.real.push_back(found[k++]);
+  for (; k < found.size(); k += 2)
+    (growth.mesh_waves.size() < waves ? growth.mesh_waves : growth.pairs).emplace_back(found[k], found[k + 1]);
+  if (growth.any() || growth.stable()) summary.stability = growth.any() ? "unstable" : "stable";
   warn_of(growth, where, "No vibration settles into these transfer functions", summary);
 }
 
