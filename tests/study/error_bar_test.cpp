@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <numbers>
 #include <vector>
@@ -283,35 +282,6 @@ TEST(ErrorBar, OfTheTrainsThresholdCovers) {
   const Bar bar = error_bar(7044, samples, {.kinks = true});
   EXPECT_GE(bar.total(), 7093 - 7044 + 16);
   EXPECT_LE(bar.total(), 3 * 40) << "of the scatter, 40 rpm";
-}
-
-// Q(h) = C h + noise h: a trend as large as the scatter is not significant and is there. Made-up noise, the same
-// always.
-TEST(ErrorBar, OfKinksHoldsTrendsThatNothingShowsForSure) {
-  std::uint64_t state = 1;
-  const auto uniform = [&state] {
-    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-    return (static_cast<double>(state >> 11) + 0.5) / 9007199254740992.0;
-  };
-  for (const double trend : {0.0, 1.0, 2.0, 3.0}) {
-    int covered = 0;
-    double length = 0;
-    constexpr int n = 2000;
-    for (int k = 0; k < n; ++k) {
-      const auto law = [&](double h) {
-        return trend * h + h * std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform());
-      };
-      const double value = law(1);
-      std::vector<Sample> samples;
-      for (const double h : {1.87, 1.41, 0.73, 0.535}) samples.push_back({Axis::around, h, law(h)});
-      const double bar = error_bar(value, samples, {.film_order = 1, .kinks = true}).total();
-      covered += bar >= std::abs(value);
-      length += bar / n;
-    }
-    // With a trend only where it is significant: 0.98, 0.85, 0.69 and 0.72.
-    EXPECT_GE(covered, 0.91 * n) << trend;
-    EXPECT_LE(length, 3.5 + 1.5 * trend) << trend;
-  }
 }
 
 TEST(ErrorBar, OfKinksIsUnknownWhereNothingShowsTheScatter) {

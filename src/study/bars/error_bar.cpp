@@ -105,13 +105,7 @@ Regression best_line(double value, const std::vector<Sample>& samples, double th
   const Regression none = line_through(value, samples, 0);
   if (samples.size() < 2) return none;
   const Regression first = line_through(value, samples, 1), other = line_through(value, samples, theory);
-  if (first.leans() != other.leans()) return first.leans() ? first : other;
-  if (!first.leans()) {
-    // A trend that five numbers cannot show for sure may be as large as they say.
-    Regression out = none;
-    out.slope = std::max(std::abs(first.slope), std::abs(other.slope));
-    return out;
-  }
+  if (!first.leans() || !other.leans()) return first.leans() ? first : other.leans() ? other : none;
   return first.length() > other.length() ? first : other;
 }
 

@@ -74,8 +74,7 @@ struct Bar {
 /// Film directions of a force with kinks: where a kink stands among the nodes is chance, on each mesh anew, so that no
 /// two meshes show how the error falls. The numbers on all meshes of a direction, this one included, scatter by s h
 /// about Q(0) alone, or about Q(0) + C h^p where C is significant, larger than t times its own deviation; p is one or
-/// that of theory, and where both show a slope whichever gives the longer bar. Where none is significant the scatter is
-/// that about Q(0) alone and C the larger one: few numbers cannot deny a trend. Q(0) is known but for u, its standard
+/// that of theory, and where both show a slope whichever gives the longer bar. Q(0) is known but for u, its standard
 /// deviation by least squares with weights 1/h^2. bar = sum |C| + sum |Q(1) - Q(0) - C| + t (sum u^2)^(1/2), of which
 /// the first counts as error of the mesh and the rest as that of kinks; t is Student's quantile of 95 % (two-sided) for
 /// the degrees of freedom of Welch and Satterthwaite. Unknown with fewer than three meshes in a direction, unless they

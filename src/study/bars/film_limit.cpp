@@ -56,7 +56,9 @@ void FilmLimit::warn(const std::vector<double>& thickness, const std::string& wh
 }
 
 void MarginSlope::add(double parameter, double margin) {
+  if (!any_) begin_ = parameter;
   if (any_ && parameter != parameter_) {
+    if ((parameter - parameter_) * (parameter_ - begin_) < 0) begin_ = parameter_;
     slope_ = (margin - margin_) / (parameter - parameter_);
     step_ = std::abs(parameter - parameter_);
   }
@@ -66,7 +68,7 @@ void MarginSlope::add(double parameter, double margin) {
 }
 
 double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin) {
-  constexpr int most_looks = 40, most_halvings = 6;
+  constexpr int most_looks = 60, most_halvings = 6;
   constexpr double close = 1e-2, exact = 1e-6;  // of what the places differ by; of the parameter
   constexpr double farthest = 8;                // times the parameter
   // The last step may have been cut to nothing where the contact was located.
@@ -83,10 +85,12 @@ double contact_there(double place, const MarginSlope& here, const std::function<
   Look last{place, margin(place)};
   const double first_step = step;
   int halvings = 0;
+  bool was_lost = true;
   for (int k = 0; k < most_looks; ++k) {
     if (last.known()) {
       (last.margin > 0 ? thick : thin) = last;
       if (last.margin == 0) return last.at;
+      halvings = 0;
     }
     double next = unknown;
     if (thick.known() && thin.known()) {
@@ -97,15 +101,24 @@ double contact_there(double place, const MarginSlope& here, const std::function<
       if (k % 3 == 2) next = (thick.at + thin.at) / 2;
     } else if (thick.known()) {
       if (!last.known() && ++halvings > most_halvings) return unknown;
-      step = last.known() ? 2 * step : step / 2;
+      // A step that had to be halved is the next one, too.
+      if (!last.known())
+        step /= 2;
+      else if (!was_lost)
+        step *= 2;
       next = thick.at + ahead * step;
     } else {
-      // Neither a solution nor one with a film that is thick enough: back along the branch.
-      next = (thin.known() ? thin.at : place) - ahead * step;
-      if (!thin.known()) next = last.at - ahead * step;
+      // Neither a solution nor one with a film that is thick enough: back along the branch, over its beginning by small
+      // steps.
+      next = last.at - ahead * step;
       step *= 2;
+      if ((last.at - here.begin()) * ahead > 0 && (next - here.begin()) * ahead < 0) {
+        next = here.begin();
+        step = first_step;
+      }
     }
     if (std::abs(next - place) > farthest * std::abs(place)) return unknown;
+    was_lost = !last.known();
     last = {next, margin(next)};
     if (last.known() && last.margin > 0 && !thick.known()) step = first_step;
     // Behind a bracket that a solution is missing in nothing can be told.

@@ -51,9 +51,11 @@ public:
   [[nodiscard]] double value() const { return slope_; }
   /// Between these two points; zero before the second one.
   [[nodiscard]] double step() const { return step_; }
+  /// Where the parameter began to run as it does between them.
+  [[nodiscard]] double begin() const { return begin_; }
 
 private:
-  double slope_ = std::numeric_limits<double>::quiet_NaN(), step_ = 0, parameter_ = 0, margin_ = 0;
+  double slope_ = std::numeric_limits<double>::quiet_NaN(), step_ = 0, parameter_ = 0, margin_ = 0, begin_ = 0;
   bool any_ = false;
 };
 

@@ -61,7 +61,7 @@ std::optional<double> cells_per_wave(system::Plant& system, const std::vector<st
     const auto line = static_cast<std::size_t>(per_line);
     for (std::size_t k = 0; k < phi.size(); ++k) {
       size += std::norm(phi[k]);
-      if (k + line < phi.size()) steps += std::norm(phi[k + line] - phi[k]);
+      steps += std::norm(phi[(k + line) % phi.size()] - phi[k]);
     }
   }
   steps = sum_over(system.comm(), steps);

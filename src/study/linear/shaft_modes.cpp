@@ -14,6 +14,8 @@ using Complex = std::complex<double>;
 
 namespace {
 
+constexpr double lightly_damped = 0.1;  // damping ratio
+
 bool grows(const spectral::Mode& m) {
   return !m.neutral() && m.lambda.real() > 0;
 }
@@ -50,7 +52,10 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     return participation(mode.shape, scale, 2 * system.coordinates());
   };
   const bool waves = may_have_mesh_waves(system);
-  const auto of_mesh = [&](const spectral::Mode& mode) { return waves && cells_per_wave(system, mode.shape); };
+  // Waves that fall away at once mislead nobody.
+  const auto of_mesh = [&](const spectral::Mode& mode) {
+    return waves && spectral::damping_ratio(mode.lambda) < lightly_damped && cells_per_wave(system, mode.shape);
+  };
   solve::MachineModes found =
       solve::machine_modes(system, equilibrium, options,
                            {std::isfinite(max_frequency) ? max_frequency : 0, sought, [&](const spectral::Mode& mode) {
