@@ -67,7 +67,9 @@ void describe(deck::Description<Compliant>& d) {
   d.add("grooves", &Compliant::grooves, "axial grooves at pressure zero; of a long film one at the top if absent",
         "000 sec. 6.2");
   d.add("quadrature", &Compliant::quadrature, "how the force is integrated");
-  d.add("differences", &Compliant::differences, "differences of the thickness around the bearing");
+  d.add("differences", &Compliant::differences,
+        "differences of the thickness around the bearing; upwind unless given. Others make waves of the mesh that grow "
+        "where a film is thin");
   d.check([](const Compliant& o, const deck::Report& r) {
     for (const Groove& g : o.grooves)
       if (g.pressure != 0) r.fail("grooves", "only grooves of films with cavitation mass_conserving have a pressure");

@@ -1,6 +1,7 @@
 #include "bifurcation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "whirl/deck/units.hpp"
 #include "whirl/system/groups.hpp"
@@ -55,6 +56,12 @@ io::BifurcationType type_of(solve::Event event) {
 bool wanted(solve::Event event, const std::vector<Event>& detect) {
   return event == solve::Event::branch_point ||
          std::find(detect.begin(), detect.end(), event_of(event)) != detect.end();
+}
+
+bool doubtful_pair(const solve::LocatedEvent& found, double uncertainty) {
+  constexpr double small_angle = 0.1;  // rad
+  return found.event == solve::Event::neimark_sacker && !std::isfinite(uncertainty) &&
+         std::abs(std::arg(found.critical)) <= small_angle;
 }
 
 io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std::string& path, const std::string& unit,

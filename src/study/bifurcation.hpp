@@ -18,6 +18,10 @@ namespace whirl::study {
 /// Whether results shall hold such an event: those asked for, and branch points in any case.
 [[nodiscard]] bool wanted(solve::Event event, const std::vector<Event>& detect);
 
+/// Whether a pair of multipliers is none that anybody may rely on: beside a fold two near +1 may seem to cross as a
+/// pair, by rounding, at a place that no other mesh confirms (its bar is not a number).
+[[nodiscard]] bool doubtful_pair(const solve::LocatedEvent& found, double uncertainty);
+
 /// What a bifurcation at `value` (in `unit`) of the option at `path` has by its place alone: that, and the
 /// nondimensional groups of the machine there. `system` is the one that is followed.
 [[nodiscard]] io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std::string& path,

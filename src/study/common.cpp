@@ -9,6 +9,7 @@
 
 #include "branch_state.hpp"
 #include "first_guess.hpp"
+#include "study/bars/mesh_wave.hpp"
 #include "study/bars/unresolved.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -136,15 +137,27 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   options.count = 60;
   options.shapes = false;
   options.rounding = true;
+  const auto grows = [](const spectral::Mode& m) { return !m.neutral() && m.lambda.real() > 0 && m.lambda.imag() > 0; };
   // Without damping the real parts are rounding errors, and none of them is a bifurcation.
   std::vector<std::complex<double>> values;
   std::map<double, double> rounding;  // by real part: that of the values that are nearly undamped
   int neutral = 0;
+  solve::MachineModes found = solve::machine_modes(system, x, options);
+  const bool waves =
+      may_have_mesh_waves(system) && std::any_of(found.modes.begin(), found.modes.end(), grows);  // perhaps
+  if (waves) {
+    options.shapes = true;
+    found = solve::machine_modes(system, x, options);
+  }
   const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
   const double limit = rotor ? resolved_to(rotor->train().rotor) : std::numeric_limits<double>::infinity();
-  const solve::MachineModes found = solve::machine_modes(system, x, options);
+  std::vector<std::complex<double>> of_mesh;
   for (const auto& mode : found.modes) {
     if (mode.lambda.real() > 0 && is_of_elements(mode.lambda, limit)) continue;
+    if (waves && grows(mode) && cells_per_wave(system, mode.shape)) {
+      of_mesh.push_back(mode.lambda);
+      continue;
+    }
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
     if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;
@@ -156,6 +169,7 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   });
   s.neutral = neutral;
   s.missed = found.doubt.empty() ? found.missed : -1;
+  s.mesh_waves = std::move(of_mesh);
   return s;
 }
 

@@ -50,7 +50,8 @@ private:
   std::string reason_;
 };
 
-/// Eigenvalues of the system at x, as stability facts with distance Re(lambda).
+/// Eigenvalues of the system at x, as stability facts with distance Re(lambda). Growing waves of a film's mesh are
+/// apart (solve::Stability::mesh_waves).
 [[nodiscard]] solve::Stability equilibrium_stability(system::Plant& system, Vec x);
 
 /// What searches for eigenvalues missed (solve::Stability::missed), for the summary.

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "study/bars/mesh_wave.hpp"
 #include "study/common.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -27,6 +28,7 @@ Growth growth_of(const solve::Stability& stability) {
   Growth out;
   out.undamped = stability.neutral;
   out.missed = stability.missed;
+  out.mesh_waves = stability.mesh_waves;
   // By falling distance from the border of stability, so the fastest come first.
   for (std::size_t k = 0; k < stability.values.size() && stability.distance[k] > 0; ++k) {
     const std::complex<double> s = stability.values[k];
@@ -44,9 +46,11 @@ Growth growth_at(system::Plant& system, Vec x) {
 }
 
 std::vector<double> packed(const Growth& growth) {
-  std::vector<double> out{static_cast<double>(growth.missed), static_cast<double>(growth.real.size())};
+  std::vector<double> out{static_cast<double>(growth.missed), static_cast<double>(growth.real.size()),
+                          static_cast<double>(growth.mesh_waves.size())};
   out.insert(out.end(), growth.real.begin(), growth.real.end());
-  for (const std::complex<double>& s : growth.pairs) out.insert(out.end(), {s.real(), s.imag()});
+  for (const auto* values : {&growth.mesh_waves, &growth.pairs})
+    for (const std::complex<double>& s : *values) out.insert(out.end(), {s.real(), s.imag()});
   return out;
 }
 
@@ -56,17 +60,26 @@ void put_growth(const std::vector<double>& packed, const std::string& where, con
   if (packed.empty()) return;
   Growth growth;
   growth.missed = static_cast<int>(packed[0]);
-  const auto pairs = packed.begin() + 2 + static_cast<std::ptrdiff_t>(packed[1]);
-  growth.real.assign(packed.begin() + 2, pairs);
-  for (auto at = pairs; at != packed.end(); at += 2) growth.pairs.emplace_back(at[0], at[1]);
-  if (growth.any() || growth.missed == 0) summary.stability = growth.any() ? "unstable" : "stable";
+  const auto complex = packed.begin() + 3 + static_cast<std::ptrdiff_t>(packed[1]);
+  growth.real.assign(packed.begin() + 3, complex);
+  const auto waves = static_cast<std::size_t>(packed[2]);
+  for (auto at = complex; at != packed.end(); at += 2)
+    (growth.mesh_waves.size() < waves ? growth.mesh_waves : growth.pairs).emplace_back(at[0], at[1]);
+  if (growth.any() || growth.stable()) summary.stability = growth.any() ? "unstable" : "stable";
   warn_of(growth, where, consequence, summary);
 }
 
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence,
              io::StudySummary& summary) {
+  warn_of_waves(growth, where, summary);
   if (!growth.any()) return;
   summary.warnings.push_back(fmt::format("{} the equilibrium is unstable: {}. {}", where, growth.words(), consequence));
+}
+
+void warn_of_waves(const Growth& growth, const std::string& where, io::StudySummary& summary) {
+  MeshWaves waves;
+  waves.add(0, growth.mesh_waves);
+  waves.warn(summary, {}, where);
 }
 
 }  // namespace whirl::study

@@ -18,12 +18,13 @@ struct Growth {
   std::vector<std::complex<double>> pairs;  ///< [1/s, rad/s], the member with imag > 0, the fastest first
   int undamped = 0;  ///< eigenvalues whose real part is rounding, both of each pair: neither growth nor decay
   int missed = 0;    ///< as solve::Stability::missed
+  std::vector<std::complex<double>> mesh_waves{};  ///< as solve::Stability::mesh_waves
 
   [[nodiscard]] bool any() const { return !real.empty() || !pairs.empty(); }
   /// Unstable eigenvalues, both of each pair.
   [[nodiscard]] int count() const { return static_cast<int>(real.size() + 2 * pairs.size()); }
-  /// Nothing grows, and no eigenvalue is known to be missing. Undamped equilibria count as stable.
-  [[nodiscard]] bool stable() const { return !any(); }
+  /// Nothing grows, and nothing is known to be missing or left out. Undamped equilibria count as stable.
+  [[nodiscard]] bool stable() const { return !any() && missed == 0 && mesh_waves.empty(); }
   /// "it diverges (s = +311.3 1/s)", "an oscillation grows (181.2 Hz, log decrement -0.00917)", with the number of
   /// those that grow where there are several; empty if nothing grows.
   [[nodiscard]] std::string words() const;
@@ -40,6 +41,9 @@ struct Growth {
 void put_growth(const std::vector<double>& packed, const std::string& where, const std::string& consequence,
                 io::StudySummary& summary);
 /// Adds the warning "WHERE the equilibrium is unstable: ..., CONSEQUENCE" if something grows; `where` as "at 3600 rpm".
+/// warn_of_waves() is called as well.
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence, io::StudySummary& summary);
+/// Says which waves of a film's mesh were left out, if any.
+void warn_of_waves(const Growth& growth, const std::string& where, io::StudySummary& summary);
 
 }  // namespace whirl::study

@@ -82,7 +82,9 @@ TEST(Facts, OfEveryKind) {
   EXPECT_EQ(around.cells, (std::array{60, 0}));
   EXPECT_EQ(around.states, 60);
   EXPECT_FALSE(around.force_by_rates || around.asperities);
-  EXPECT_EQ(around.mesh_order, 2);
+  EXPECT_EQ(around.mesh_order, 1);  // the default has no waves of the mesh
+  finite.differences = Compliant::Differences::central;
+  EXPECT_EQ(facts(finite).mesh_order, 2);
 }
 
 // The film that the deck calls `key`, complete or not.

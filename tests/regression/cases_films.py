@@ -104,6 +104,24 @@ def points(h):
     h.true("the status counts them", study["status"] == ("completed" if lost == 0 else f"{lost} of 6 points have no film"), study["status"])
     h.true("no value is no number", all(q["value"] is not None for q in study["values"].values()))
 
+    # Motions that a film does not bear: reasons motion by motion, no values, and nothing delivered where none is left.
+    enforced = "{dynamic_coefficients: {name: %s, eccentricity: 0.6, speeds: [2000 rad/s], method: enforced, amplitudes: [%s]}}"
+    ran = h.whirl("../aerostatic/bearing_b.yaml", "enforced",
+                  ["bearings.*.film.cells=[16, 6]", f"studies=[{enforced % ('some', '0.05, 0.9')}, {enforced % ('none', '0.9')}]"])
+    h.exits("enforced motions", ran, 3, "none: 2 of 2 enforced motions have no values")
+    found = ran[2]
+    with h5py.File(h.work / "enforced/results.h5") as f:
+        table = f["studies/some/enforced"]
+        for way, entries in (("x", ("xx", "yx")), ("y", ("xy", "yy"))):
+            reasons = [bool(r) for r in table[f"reason_{way}"][0, 0, :]]
+            h.true(f"enforced along {way}: the second motion has a reason", reasons == [False, True], str(reasons))
+            for e in entries:
+                values = numpy.isnan(table[f"k_{e}"][0, 0, :]).tolist()
+                h.true(f"enforced k_{e}: values where there is no reason", values == reasons, str(values))
+    h.true("the status counts motions", found["some"]["status"] == "2 of 4 enforced motions have no values", found["some"]["status"])
+    h.true("a warning names motion and reason", any("along x with amplitude 0.9" in w for w in found["some"]["warnings"]), str(found["some"]["warnings"]))
+    h.true("no value is no number", all(q["value"] is not None for q in found["some"]["values"].values()))
+
 
 def folders(h):
     """Folders and pipes in the place of results, damaged results, options of a folder: one sentence and no waiting."""

@@ -8,7 +8,7 @@ coverage.py check DATA.json                              exit 1 if fewer than 99
 coverage.py PROGRAM SOURCE GROUP...                      measures and checks; group `named`: the bars that were found not to cover
 
 Groups: threshold (the train's variants), cycles (its forced cycles), compliant (Hopf points, folds, flips and Neimark-Sacker
-points of rotors with compliant films, with the source's scheme, `third_order` and the default), values (static positions, loads, K, C, films;
+points of rotors with compliant films, with the source's scheme, `third_order` and central differences), values (static positions, loads, K, C, films;
 modes; response; map of one bearing: train and pump).
 The truth of a number is Richardson's limit of two fine meshes, second order, and its own error the last step of it.
 """
@@ -151,7 +151,7 @@ def cycles(runner, grade):
 
 HALF = "bearings.half.film"
 SCHEMES = {"source": ["quadrature=simpson", "differences=upwind"], "third_order": ["quadrature=sub_cell", "differences=third_order"],
-           "default": ["quadrature=sub_cell", "differences=central"]}
+           "central": ["quadrature=sub_cell", "differences=central"]}
 
 
 def scheme(name):
@@ -168,7 +168,7 @@ def compliant_hopf(runner, case):
         run = runner.run(f"compliant_rotor/{deck}.yaml", [f"{HALF}.compliance={compliance}", f"{HALF}.cells=[{n}, 4]"] + scheme(name) + ranges)
         return next((b for b in run.get("balanced", {}).get("bifurcations", []) if b["type"] == "hopf"), None)
 
-    fine = [hopf("default", n) for n in (800, 1600)]
+    fine = [hopf("central", n) for n in (800, 1600)]
     if not all(fine):
         print(f"{case}: no truth", file=sys.stderr)
         return []
@@ -206,8 +206,8 @@ def compliant_cycle(runner, deck, compliance):
         near = [b for b in run.get(study, {}).get("bifurcations", []) if b["type"] == kind and abs(b["nondimensional_speed"] / speed - 1) < 0.1]
         return min(near, key=lambda b: abs(b["nondimensional_speed"] - speed), default=None)
 
-    fine = [found("default", n) for n in (100, 200)]
-    coarse = {(name, 50): found(name, 50) for name in ("source", "default")}
+    fine = [found("central", n) for n in (100, 200)]
+    coarse = {(name, 50): found(name, 50) for name in ("source", "central")}
     rows = []
     for _, _, study, kind, speed in wanted:
         both = [nearest(run, study, kind, speed) for run in fine]

@@ -130,7 +130,7 @@ const std::string short_deck = "compliant_rotor/figure_4_10.yaml", long_deck = "
 
 // One study and one bearing of a deck, the middle one (B = 0.1), with another film and other options.
 Map one_map(const std::string& deck, const std::string& film, const std::string& options) {
-  return run_all(deck, {"bearings.B01.film={" + film + ", reference_speed: 160 rad/s}",
+  return run_all(deck, {"bearings.B01.film={" + film + ", differences: central, reference_speed: 160 rad/s}",
                         "studies=[{bearing_map: {bearing: B01, " + options + "}}]"})
       .at("bearing_map");
 }
@@ -199,7 +199,7 @@ TEST(BearingMap, BorderOfStabilityIsTheHopfPoint) {
     const Map m =
         run_all(inlet ? long_deck : short_deck,
                 {fmt::format("bearings.B01.film={{type: compliant_{}, compliance: 0.1, reference_speed: {} "
-                             "rad/s, cells: [160, 4]}}",
+                             "rad/s, cells: [160, 4], differences: central}}",
                              inlet ? "long" : "short", scale),
                  fmt::format("studies=[{{bearing_map: {{bearing: B01, speed: {:.10g} rad/s, max_eccentricity: "
                              "0.5, points: 10, sommerfeld: [{:.10g}]}}}}]",

@@ -123,8 +123,41 @@ TEST(Kept, AContactOnAnotherMeshIsFoundAlongTheBranchThere) {
   EXPECT_NEAR(contact_there(300, here, other), 400, 1);
   // It touches earlier, and has no solution beyond.
   EXPECT_NEAR(contact_there(300, here, thins(1e-3, 190)), 190, 1);
-  // The margin turns before it vanishes.
+  // The margin turns, and does not come to zero.
   EXPECT_TRUE(std::isnan(contact_there(300, here, [](double p) { return 1e-3 + 1e-8 * (p - 310) * (p - 310); })));
+  // It turns twice on the way.
+  const auto waves = [](double p) { return 1e-3 * (1 - p / 900) + 2e-5 * std::sin(p / 20); };
+  const double found = contact_there(300, here, waves);
+  EXPECT_NEAR(waves(found), 0, 1e-5);
+  // There, no solution stands near the contact, and steps must be halved.
+  int looks = 0;
+  const auto narrow = [&looks, last = 300.0](double p) mutable {
+    ++looks;
+    if (std::abs(p - last) > 40 && p > 300) return unknown;
+    last = p;
+    return 1e-3 * (700 - p);
+  };
+  EXPECT_NEAR(contact_there(300, here, narrow), 700, 4.1);
+  EXPECT_LE(looks, 60);
+}
+
+// Places on 30, 60 and 120 cells of a soft liner: there is no limit, and no bar that could hold it.
+TEST(Kept, AContactThatRunsAwayHasNoBar) {
+  const auto contact = [](double coarse, double fine) {
+    io::StudySummary summary;
+    put_contact(summary, 520.6, "N", 1e-3, {}, {{Axis::around, 2, coarse}, {Axis::around, 0.5, fine}});
+    return summary;
+  };
+  const io::StudySummary away = contact(182.4, 1363);
+  EXPECT_TRUE(std::isnan(away.values.at(0).second.more.at("uncertainty")));
+  ASSERT_EQ(away.warnings.size(), 1U);
+  EXPECT_NE(away.warnings[0].find("has no limit"), std::string::npos) << away.warnings[0];
+  EXPECT_NE(away.warnings[0].find("1363 at 0.5 times"), std::string::npos) << away.warnings[0];
+  // Coming to rest, however far: a bar, and where it is long a warning without that reason.
+  const io::StudySummary rests = contact(182.4, 650);
+  EXPECT_TRUE(std::isfinite(rests.values.at(0).second.more.at("uncertainty")));
+  EXPECT_EQ(rests.warnings.at(0).find("has no limit"), std::string::npos);
+  EXPECT_TRUE(contact(500, 525).warnings.empty());
 }
 
 }  // namespace

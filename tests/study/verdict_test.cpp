@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "study/bars/beyond.hpp"
+#include "study/bifurcation.hpp"
 
 namespace {
 
@@ -39,6 +40,32 @@ std::string words(const BranchVerdict& v) {
 double threshold(const BranchVerdict& v, const std::vector<BranchChange>& changes) {
   const int k = threshold_among(v.limits());
   return k < 0 ? NAN : changes[static_cast<std::size_t>(k)].parameter;
+}
+
+// A wave of a film's mesh grows from 4500 on, whirl sets in at 5600: what the wave hides is not known, whirl is.
+TEST(Verdict, OfAWaveOfTheMeshIsOpen) {
+  const BranchChange wave{0, 4500, 0, 2, 1, false, BranchChange::of_mesh};
+  const BranchChange gone{1, 5000, 2, 0, 1, false, BranchChange::of_mesh}, whirl{2, 5600, 0, 2, 1, false, 0};
+  const auto alone = verdict_of({{4000, 0}, {4800, 2}}, {wave});
+  EXPECT_EQ(words(alone), "stable 4000..4500; undetermined 4500..4800; ");
+  EXPECT_EQ(alone.text(), "undetermined");
+  EXPECT_TRUE(std::isnan(threshold(alone, {wave})));
+  const auto both = verdict_of({{4000, 0}, {4800, 2}, {5300, 0}, {6000, 2}}, {wave, gone, whirl});
+  EXPECT_EQ(words(both), "stable 4000..4500; undetermined 4500..5000; stable 5000..5600; unstable 5600..6000; ");
+  EXPECT_EQ(both.text(), "loses stability");
+  EXPECT_EQ(threshold(both, {wave, gone, whirl}), 5600);
+}
+
+// Two multipliers near +1 by rounding, beside a fold: no other mesh has such a pair.
+TEST(Verdict, TellsPairsBesideAFoldFromBifurcations) {
+  whirl::solve::LocatedEvent pair{whirl::solve::Event::neimark_sacker, 1, 0, 0, std::polar(1.0, 0.02)};
+  EXPECT_TRUE(doubtful_pair(pair, NAN));
+  EXPECT_FALSE(doubtful_pair(pair, 0.5)) << "other meshes confirm it";
+  pair.critical = std::polar(1.0, 1.9);
+  EXPECT_FALSE(doubtful_pair(pair, NAN)) << "far from +1";
+  pair.event = whirl::solve::Event::flip;
+  pair.critical = 1;
+  EXPECT_FALSE(doubtful_pair(pair, NAN));
 }
 
 // Stable below 4500, unstable to 5000, stable to 5600, unstable beyond.

@@ -37,8 +37,9 @@ inline Options film_of(Kind kind) {
   throw core::Bug("a kind without a film");
 }
 
-/// The options that all films on a liner have, for one of their kinds.
+/// The options that all films on a liner have, for one of their kinds; central differences unless a test says others.
 struct Elastic : Compliant {
+  Elastic() { differences = Differences::central; }
   Kind kind = Kind::compliant_short;
   operator Options() const {
     Options o = film_of(kind);

@@ -23,6 +23,7 @@ inline system::Train finite_rotor(int around, int along) {
   film.compliance = 0.1;
   film.reference_speed = finite_speed_scale;
   film.cells = {around, along};
+  film.differences = film::Compliant::Differences::central;
   system::Train t = half_rotor(film, 5e-6);
   t.supports[0].name = "half";
   return t;

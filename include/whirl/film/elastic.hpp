@@ -40,14 +40,14 @@ struct Compliant {
   States states = States::dynamic;      // condensed: the liner gives way as the pressure of the moment asks
   std::array<int, 2> cells = {60, 16};  // -, around x along; a short or long film has no mesh along
   std::optional<Liner> liner;
-  std::optional<double> compliance;                // -, B
-  double reference_speed = 0.0;                    // rad/s, Omega_0 of B
-  double liner_damping = 0.0;                      // s, tau: p = (p of the deflection at rest) + tau dU/dt/k
-  std::optional<double> rubber_thickness;          // m, of a liner that stiffens as it is compressed
-  std::optional<Contact> contact;                  // absent: a film that touches is an error
-  std::vector<Groove> grooves;                     // at pressure zero
-  Quadrature quadrature = Quadrature::sub_cell;    // of the force
-  Differences differences = Differences::central;  // of dh/dtheta
+  std::optional<double> compliance;               // -, B
+  double reference_speed = 0.0;                   // rad/s, Omega_0 of B
+  double liner_damping = 0.0;                     // s, tau: p = (p of the deflection at rest) + tau dU/dt/k
+  std::optional<double> rubber_thickness;         // m, of a liner that stiffens as it is compressed
+  std::optional<Contact> contact;                 // absent: a film that touches is an error
+  std::vector<Groove> grooves;                    // at pressure zero
+  Quadrature quadrature = Quadrature::sub_cell;   // of the force
+  Differences differences = Differences::upwind;  // of dh/dtheta
   friend bool operator==(const Compliant&, const Compliant&) = default;
 };
 

@@ -94,13 +94,24 @@ VectorXcd eigenvector_in(const MatrixXd& basis, const MatrixXd& product, Complex
   return basis * spectral::eigenpairs(plane).nearest(mu);
 }
 
+// Of the plane that belongs to a pair of multipliers beside the unit circle.
+void find_plane(BorderedMonodromy& bordered, Complex multiplier) {
+  find_null_vectors(bordered, {1, -2 * multiplier.real() / std::abs(multiplier), 1});
+}
+
 }  // namespace
+
+VectorXcd neimark_sacker_vector(CycleProblem& problem, Complex multiplier) {
+  BorderedMonodromy bordered(problem, 2);
+  find_plane(bordered, multiplier);
+  return eigenvector_in(bordered.v, problem.composition().times(bordered.v), multiplier);
+}
 
 double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multiplier, double step,
                                   const MotionSize& size) {
   Composition& joined = problem.composition();
   BorderedMonodromy bordered(problem, 2);
-  find_null_vectors(bordered, {1, -2 * multiplier.real() / std::abs(multiplier), 1});
+  find_plane(bordered, multiplier);
   // p^* q = 1 and |q|^2 = n
   VectorXcd q = eigenvector_in(bordered.v, joined.times(bordered.v), multiplier),
             p = eigenvector_in(bordered.left(), joined.times_transposed(bordered.left()), std::conj(multiplier));

@@ -56,7 +56,9 @@ void FilmLimit::warn(const std::vector<double>& thickness, const std::string& wh
 }
 
 void MarginSlope::add(double parameter, double margin) {
+  if (!any_) begin_ = parameter;
   if (any_ && parameter != parameter_) {
+    if ((parameter - parameter_) * (parameter_ - begin_) < 0) begin_ = parameter_;
     slope_ = (margin - margin_) / (parameter - parameter_);
     step_ = std::abs(parameter - parameter_);
   }
@@ -66,54 +68,115 @@ void MarginSlope::add(double parameter, double margin) {
 }
 
 double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin) {
-  constexpr int most_back = 6, most_looks = 20, most_halvings = 5;
+  constexpr int most_looks = 60, most_halvings = 6;
   constexpr double close = 1e-2, exact = 1e-6;  // of what the places differ by; of the parameter
+  constexpr double farthest = 8;                // times the parameter
   // The last step may have been cut to nothing where the contact was located.
   constexpr double least_step = 1e-2;  // of the parameter
-  double p = place, m = margin(p), slope = here.value(), step = std::max(here.step(), least_step * std::abs(place));
+  const double slope = here.value();
+  double step = std::max(here.step(), least_step * std::abs(place));
   if (!std::isfinite(slope) || slope == 0 || step == 0) return unknown;
-  for (int k = 0; k < most_back && !std::isfinite(m); ++k, step *= 2) {
-    p += std::copysign(step, slope);  // where the film is thicker
-    m = margin(p);
-  }
-  for (int k = 0; k < most_looks && std::isfinite(m); ++k) {
-    if (std::abs(m / slope) <= std::max(close * std::abs(p - place), exact * std::abs(place))) return p - m / slope;
-    double q = p - std::clamp(m / slope, -step, step), there = margin(q);
-    for (int halvings = 0; halvings < most_halvings && !std::isfinite(there); ++halvings) {
-      q = (p + q) / 2;
-      there = margin(q);
+  const double ahead = slope > 0 ? -1 : 1;
+  struct Look {
+    double at = unknown, margin = unknown;
+    [[nodiscard]] bool known() const { return std::isfinite(margin); }
+  };
+  Look thick, thin;  // the last ones with a film that is thick enough, and with one that is not
+  Look last{place, margin(place)};
+  const double first_step = step;
+  int halvings = 0;
+  bool was_lost = true;
+  for (int k = 0; k < most_looks; ++k) {
+    if (last.known()) {
+      (last.margin > 0 ? thick : thin) = last;
+      if (last.margin == 0) return last.at;
+      halvings = 0;
     }
-    const double next = (there - m) / (q - p);
-    if (!(next * slope > 0)) return unknown;
-    step = 2 * std::abs(q - p);
-    p = q, m = there, slope = next;
+    double next = unknown;
+    if (thick.known() && thin.known()) {
+      next = thick.at + (thin.at - thick.at) * thick.margin / (thick.margin - thin.margin);
+      if (std::abs(thin.at - thick.at) <= std::max(close * std::abs(next - place), exact * std::abs(place)))
+        return next;
+      // One end must not stay for ever: a curved margin leaves it far away.
+      if (k % 3 == 2) next = (thick.at + thin.at) / 2;
+    } else if (thick.known()) {
+      if (!last.known() && ++halvings > most_halvings) return unknown;
+      // A step that had to be halved is the next one, too.
+      if (!last.known())
+        step /= 2;
+      else if (!was_lost)
+        step *= 2;
+      next = thick.at + ahead * step;
+    } else {
+      // Neither a solution nor one with a film that is thick enough: back along the branch, over its beginning by small
+      // steps.
+      next = last.at - ahead * step;
+      step *= 2;
+      if ((last.at - here.begin()) * ahead > 0 && (next - here.begin()) * ahead < 0) {
+        next = here.begin();
+        step = first_step;
+      }
+    }
+    if (std::abs(next - place) > farthest * std::abs(place)) return unknown;
+    was_lost = !last.known();
+    last = {next, margin(next)};
+    if (last.known() && last.margin > 0 && !thick.known()) step = first_step;
+    // Behind a bracket that a solution is missing in nothing can be told.
+    if (thick.known() && thin.known() && !last.known() && ++halvings > most_halvings) return unknown;
   }
   return unknown;
 }
 
+namespace {
+
+// Whether refining moves the place farther each time: of meshes of one direction from the coarsest to the finest.
+bool runs_away(double place, std::vector<ContactThere> there) {
+  there.push_back({there.front().axis, 1, place});
+  std::sort(there.begin(), there.end(), [](const auto& a, const auto& b) { return a.spacing > b.spacing; });
+  for (std::size_t k = 2; k < there.size(); ++k) {
+    const double coarse =
+                     (there[k - 1].place - there[k - 2].place) / std::log(there[k - 2].spacing / there[k - 1].spacing),
+                 fine = (there[k].place - there[k - 1].place) / std::log(there[k - 1].spacing / there[k].spacing);
+    if (!(fine * coarse > 0 && std::abs(fine) >= std::abs(coarse))) return false;
+  }
+  return there.size() > 2;
+}
+
+}  // namespace
+
 void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, const MeshLaw& law,
                  const std::vector<ContactThere>& there) {
   Bars bars({place}, law);
-  bool with_time = false;
+  bool with_time = false, away = false;
+  std::vector<std::string> others;
   for (const ContactThere& m : there) {
     bars.add(m.axis, m.spacing, {m.place});
     with_time |= m.axis == Axis::time;
+    others.push_back(std::isfinite(m.place) ? fmt::format("{:.4g} at {:.3g} times its spacing", m.place, m.spacing)
+                                            : fmt::format("not found at {:.3g} times its spacing", m.spacing));
+  }
+  for (const Axis axis : all_axes) {
+    std::vector<ContactThere> own;
+    for (const ContactThere& m : there)
+      if (m.axis == axis && std::isfinite(m.place)) own.push_back(m);
+    away = away || (!own.empty() && runs_away(place, own));
   }
   Bar bar = bars[0];
   bar.location = location;
+  constexpr double says_nothing = 0.5;  // of the place
+  const bool told = bar.total() < says_nothing * std::abs(place);
+  // Where refining moves it farther each time there is no limit that a bar could hold.
+  away = away && !told;
+  if (away) bar.film_mesh = unknown;
   auto more = bar.parts(with_time);
   more["uncertainty"] = bar.total();
   summary.set("contact", place, unit, more);
-  constexpr double says_nothing = 0.5;  // of the place
-  if (there.empty() || bar.total() < says_nothing * std::abs(place)) return;
-  std::vector<std::string> others;
-  for (const ContactThere& m : there)
-    if (std::isfinite(m.place)) others.push_back(fmt::format("{:.4g}", m.place));
-  summary.warnings.push_back(
-      fmt::format("where the film becomes too thin hangs on the mesh ({:.4g} {} on this one, {}) and says nothing "
-                  "about the machine",
-                  place, unit,
-                  others.empty() ? "nowhere near it on others" : fmt::format("{} on others", fmt::join(others, ", "))));
+  if (there.empty() || told) return;
+  summary.warnings.push_back(fmt::format(
+      "where the film becomes too thin hangs on the mesh ({:.4g} {} on this one; {}) and says nothing about the "
+      "machine{}",
+      place, unit, fmt::join(others, "; "),
+      away ? ": with each finer mesh it moves farther, so that it has no limit and no error bar" : ""));
 }
 
 std::vector<double> film_column(std::vector<double> thickness, std::size_t places) {

@@ -51,21 +51,25 @@ public:
   [[nodiscard]] double value() const { return slope_; }
   /// Between these two points; zero before the second one.
   [[nodiscard]] double step() const { return step_; }
+  /// Where the parameter began to run as it does between them.
+  [[nodiscard]] double begin() const { return begin_; }
 
 private:
-  double slope_ = std::numeric_limits<double>::quiet_NaN(), step_ = 0, parameter_ = 0, margin_ = 0;
+  double slope_ = std::numeric_limits<double>::quiet_NaN(), step_ = 0, parameter_ = 0, margin_ = 0, begin_ = 0;
   bool any_ = false;
 };
 
-/// Where the margin vanishes of a branch on another mesh, whose contact on the mesh in use is at `place`: by the secant
-/// method with steps that at most double, to a hundredth of what the places differ by. Close to a wall margins are no
-/// straight lines over the parameter. `margin` gives the margin of the solution at a parameter, found from the solution
-/// before, or not a number where there is none; it is asked at `place` first, then on the side that `here`, slope and
-/// last step of the branch, came from. Not a number if the margin turns or does not come to zero.
+/// Where the margin vanishes of a branch on another mesh, whose contact on the mesh in use is at `place`: by steps that
+/// double until it is enclosed, and then by false positions, to a hundredth of what the places differ by. Close to a
+/// wall margins are no straight lines over the parameter and may turn on the way. `margin` gives the margin of the
+/// solution at a parameter, found from the solution before, or not a number where there is none; it is asked at `place`
+/// first, then on the side that `here`, slope and last step of the branch, came from. Not a number if the margin does
+/// not come to zero within eight times the parameter.
 [[nodiscard]] double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin);
 
-/// Puts the place of contact into the summary, its bar from the places on other meshes, and a warning where the bar is
-/// unknown or longer than half the place: thin films of soft liners have no limit on finer meshes.
+/// Puts the place of contact into the summary, its bar from the places on other meshes, and a warning with these where
+/// the bar is unknown or longer than half the place. Thin films of soft liners have no limit on finer meshes: where
+/// each refinement moves the place farther than the one before, the bar is unknown for that reason.
 void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, const MeshLaw& law,
                  const std::vector<ContactThere>& there);
 

@@ -22,11 +22,11 @@ struct FilmMesh {
   double spacing = 1;                  ///< over the spacing in use, after rounding
 };
 
-/// Half and double the cells of each direction that a film of the machine has a mesh in; of fewer than 14 cells four
-/// times as many, too, because half of them shows little; two more between them where forces have kinks, so that the
-/// scatter is seen; and coarser meshes only, as many of them, where films have more than LayoutOptions::refined_states:
-/// finer ones would cost more than the branch. Each mesh once: few cells are rounded to fewer meshes. Empty for
-/// machines without film meshes, and where LayoutOptions asks for no bars.
+/// Half and double the cells of each direction that a film of the machine has a mesh in; of fewer than 24
+/// cells around or 14 along four times as many, too, because half of them shows little; two more between them where
+/// forces have kinks, so that the scatter is seen; and coarser meshes only, as many of them, where films have more than
+/// LayoutOptions::refined_states: finer ones would cost more than the branch. Each mesh once: few cells are rounded to
+/// fewer meshes. Empty for machines without film meshes, and where LayoutOptions asks for no bars.
 [[nodiscard]] std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOptions& layout);
 
 /// The train with the cells of its films multiplied and rounded: at least four, even ones for Simpson's rule.

@@ -4,87 +4,93 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "study/bars/error_bar.hpp"
 #include "study/state_rows.hpp"
 #include "whirl/film/options.hpp"
-#include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {
 namespace {
 
-constexpr double of_eight_cells = 0.5857864376269049;  // 4 sin^2(pi/8)
+constexpr double resolved = 8;  // cells in a wave
+
+bool of_film_mesh(const problem::Field& field) {
+  return field.quantity == "thickness";
+}
+
+// Cells around the film of that name and states in each of its lines, which stand one after another around the bearing.
+std::pair<int, PetscInt> mesh_of(const system::RotorSystem& rotor, const std::string& name) {
+  const auto& supports = rotor.train().supports;
+  for (std::size_t b = 0; b < supports.size(); ++b) {
+    const PetscInt states = rotor.own_states(static_cast<int>(b));
+    if (supports[b].name != name || states == 0) continue;
+    const int around = film::facts(supports[b].film).cells[0];
+    return {around, std::max<PetscInt>(1, states / around)};
+  }
+  return {0, 1};
+}
+
+std::string between(const std::array<double, 2>& range) {
+  return range[0] == range[1] ? fmt::format("{:.6g}", range[0]) : fmt::format("{:.6g} to {:.6g}", range[0], range[1]);
+}
 
 }  // namespace
 
-double roughness(system::Plant& system, const spectral::Mode& mode) {
+bool may_have_mesh_waves(const system::Plant& system) {
+  const std::vector<problem::Field> fields = system.fields();
+  return dynamic_cast<const system::RotorSystem*>(&system) && std::any_of(fields.begin(), fields.end(), of_film_mesh);
+}
+
+std::optional<double> cells_per_wave(system::Plant& system, const std::vector<std::complex<double>>& shape) {
   const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
-  if (!rotor || mode.shape.empty()) return 0;
+  if (!rotor || shape.empty()) return {};
   PetscInt first = 0;  // row of this rank in the whole shape
   {
     const core::Vector x = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
     core::check(VecGetOwnershipRange(x.get(), &first, nullptr));
   }
-  double steps = 0, size = 0;
+  double steps = 0, size = 0, least = resolved;
   for (const problem::Field& field : system.fields()) {
-    if (field.quantity != "thickness") continue;
-    // States stand line by line around the bearing; their numbers tell how many a line has.
-    const auto& supports = rotor->train().supports;
-    PetscInt per_line = 1;
-    for (std::size_t b = 0; b < supports.size(); ++b)
-      if (supports[b].name == field.name && rotor->own_states(static_cast<int>(b)) > 0)
-        per_line =
-            std::max<PetscInt>(1, rotor->own_states(static_cast<int>(b)) / film::facts(supports[b].film).cells[0]);
+    if (!of_film_mesh(field)) continue;
+    const auto [around, per_line] = mesh_of(*rotor, field.name);
+    if (around > 0) least = std::min(least, around / 3.0);
     std::vector<std::complex<double>> phi;
-    field.each([&](PetscInt row) { phi.push_back(mode.shape[static_cast<std::size_t>(first + row)]); });
+    field.each([&](PetscInt row) { phi.push_back(shape[static_cast<std::size_t>(first + row)]); });
     const auto line = static_cast<std::size_t>(per_line);
     for (std::size_t k = 0; k < phi.size(); ++k) {
       size += std::norm(phi[k]);
-      if (k + line < phi.size()) steps += std::norm(phi[k + line] - phi[k]);
+      steps += std::norm(phi[(k + line) % phi.size()] - phi[k]);
     }
   }
   steps = sum_over(system.comm(), steps);
   size = sum_over(system.comm(), size);
-  return size > 0 ? steps / size : 0;
+  if (size == 0) return {};
+  const double cells = std::numbers::pi / std::asin(std::min(1.0, std::sqrt(steps / size) / 2));
+  return cells < least ? std::optional(cells) : std::nullopt;
 }
 
-std::optional<double> mesh_wave_at(system::Plant& system, Vec x, double omega) {
-  const std::vector<problem::Field> fields = system.fields();
-  if (std::none_of(fields.begin(), fields.end(), [](const problem::Field& f) { return f.quantity == "thickness"; }))
-    return {};
-  spectral::EigenOptions options;
-  options.count = 60;
-  const std::vector<spectral::Mode> modes = solve::machine_modes(system, x, options).modes;
-  const std::complex<double> wanted(0, omega);
-  const auto nearest = std::min_element(modes.begin(), modes.end(), [&](const auto& a, const auto& b) {
-    return std::abs(a.lambda - wanted) < std::abs(b.lambda - wanted);
-  });
-  if (nearest == modes.end()) return {};
-  const double r = roughness(system, *nearest);
-  if (r <= of_eight_cells) return {};
-  return std::numbers::pi / std::asin(std::min(1.0, std::sqrt(r) / 2));
+void MeshWaves::add(double parameter, const std::vector<std::complex<double>>& waves) {
+  const auto widen = [](std::array<double, 2>& range, double value, bool first) {
+    range = first ? std::array{value, value} : std::array{std::min(range[0], value), std::max(range[1], value)};
+  };
+  for (const auto& w : waves) {
+    widen(at_, parameter, most_ == 0);
+    widen(frequencies_, w.imag(), most_ == 0);
+    most_ = std::max<std::size_t>(most_, 1);
+  }
+  most_ = std::max(most_, waves.size());
 }
 
-void put_mesh_wave(io::Bifurcation& b, double cells) {
-  b.more["cells_per_wave"] = cells;
-  b.uncertainty = unknown;
-  b.criticality = "undetermined";
-  b.criticality_by = fmt::format("a wave of the film's mesh, {:.1f} cells long: no property of the machine", cells);
-}
-
-bool is_mesh_wave(const io::Bifurcation& b) {
-  return b.more.contains("cells_per_wave");
-}
-
-void warn_of_mesh_wave(const io::Bifurcation& b, io::StudySummary& summary) {
-  summary.warnings.push_back(
-      fmt::format("the Hopf point at {:.6g} {} is a wave of the film's mesh ({:.1f} cells long) and does not belong to "
-                  "the machine: "
-                  "from there on the film is not resolved; use 'differences: upwind' or more cells around the bearing",
-                  b.value, b.unit, b.more.at("cells_per_wave")));
+void MeshWaves::warn(io::StudySummary& summary, const std::string& unit, const std::string& where) const {
+  if (most_ == 0) return;
+  const std::string frequencies = frequencies_[1] > 0 ? fmt::format(" ({} rad/s)", between(frequencies_)) : "";
+  summary.warnings.push_back(fmt::format(
+      "{} {} of the film's mesh{}, fewer than eight cells long, {} left out: the film is not resolved there, and no "
+      "such motion belongs to the machine. Use 'differences: upwind' or more cells around the bearing",
+      where.empty() ? fmt::format("at {} {}", between(at_), unit) : where,
+      most_ == 1 ? "a wave" : fmt::format("up to {} waves", most_), frequencies, most_ == 1 ? "is" : "are"));
 }
 
 }  // namespace whirl::study

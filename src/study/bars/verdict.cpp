@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "whirl/io/table.hpp"
 
@@ -34,7 +35,8 @@ void put_changes(io::Group& group, const std::vector<BranchChange>& changes, con
                    {"unstable_after", "1", "and behind it"},
                    {"slope", "1", "its sign is that of the parameter's change along the branch"},
                    {"fold", "1", "1 where the parameter turns"},
-                   {"bifurcation", "1", "row in the table of bifurcations, from 0; -1: not asked for"}});
+                   {"bifurcation", "1",
+                    "row in the table of bifurcations, from 0; -1: not asked for; -2: a wave of a film's mesh"}});
   for (const BranchChange& c : changes)
     table.append({static_cast<double>(c.after), c.parameter, static_cast<double>(c.before),
                   static_cast<double>(c.behind), c.slope, c.fold ? 1.0 : 0.0, static_cast<double>(c.bifurcation)});
@@ -100,11 +102,18 @@ std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
                                   : reaches    ? points_[i + 1].stability
                                                : StabilityClass::stable;
       const double end = last ? here.parameter : c.parameter;
-      if (c.fold || next != out.back().stability) out.push_back({c.parameter, end, next, false});
+      if (c.fold || next != out.back().stability)
+        out.push_back({c.parameter, end, next, false, c.bifurcation == BranchChange::of_mesh && c.behind > c.before});
     }
   }
-  const bool one = std::all_of(out.begin(), out.end(), [&](const auto& s) { return s.stability == out[0].stability; });
-  for (Stretch& s : out) s.doubtful = s.doubtful && one;
+  std::optional<StabilityClass> first;
+  bool one = true;
+  for (const Stretch& s : out) {
+    if (s.of_mesh) continue;
+    one = one && s.stability == first.value_or(s.stability);
+    first = s.stability;
+  }
+  for (Stretch& s : out) s.doubtful = s.of_mesh || (s.doubtful && one);
   return out;
 }
 
@@ -120,12 +129,15 @@ std::string BranchVerdict::text() const {
   if (all.empty()) return {};
   std::array<bool, 3> met{};
   bool doubtful = false;
+  std::optional<StabilityClass> begins;
   for (const Stretch& s : all) {
-    met[static_cast<std::size_t>(s.stability)] = true;
     doubtful = doubtful || s.doubtful;
+    if (s.of_mesh) continue;
+    met[static_cast<std::size_t>(s.stability)] = true;
+    if (!begins) begins = s.stability;
   }
-  const StabilityClass first = all.front().stability;
-  if (met[0] + met[1] + met[2] == 1) return doubtful ? "undetermined" : std::string(name_of(first)) + " throughout";
+  const StabilityClass first = begins.value_or(StabilityClass::unstable);
+  if (met[0] + met[1] + met[2] <= 1) return doubtful ? "undetermined" : std::string(name_of(first)) + " throughout";
   if (first == StabilityClass::unstable) return "unstable from its start";
   if (!met[static_cast<std::size_t>(StabilityClass::unstable)]) return "stable or undamped";
   return first == StabilityClass::stable ? "loses stability" : "undamped, then unstable";
@@ -141,7 +153,7 @@ std::vector<StabilityLimit> BranchVerdict::limits() const {
   std::vector<StabilityLimit> out;
   for (std::size_t k = 0; k < changes_.size(); ++k) {
     const BranchChange& c = changes_[k];
-    if (std::min(c.before, c.behind) > 0 || c.before == c.behind) continue;
+    if (std::min(c.before, c.behind) > 0 || c.before == c.behind || c.bifurcation == BranchChange::of_mesh) continue;
     out.push_back({k, c.fold ? turns_below(c) : c.below() == 0});
   }
   std::stable_sort(out.begin(), out.end(), [&](const auto& a, const auto& b) {

@@ -22,7 +22,8 @@ struct BranchChange {
   int before = 0, behind = 0;  ///< unstable values on either side, along the branch
   double slope = 0;            ///< its sign is that of the parameter's change along the branch there
   bool fold = false;           ///< the parameter turns
-  int bifurcation = -1;        ///< its place among the bifurcations of the summary; -1: not asked for
+  int bifurcation = -1;        ///< its place among the bifurcations of the summary; -1: not asked for; or of_mesh
+  static constexpr int of_mesh = -2;  ///< a wave of a film's mesh: no bifurcation of the machine
 
   /// Unstable values on the side of the smaller, and of the larger parameter. No fold.
   [[nodiscard]] int below() const { return slope > 0 ? before : behind; }
@@ -51,8 +52,8 @@ public:
   void doubt(int point) { doubts_.push_back(point); }
 
   /// Stretches of one class in the order of the branch, each from change to change; cut at folds. `undetermined`: all
-  /// points are of one class, and one on this stretch is doubtful. Between two points of different class without a
-  /// change a gap is left.
+  /// points are of one class, and one on this stretch is doubtful; or a wave of the mesh grows there. Between two
+  /// points of different class without a change a gap is left.
   [[nodiscard]] std::vector<io::StabilityRange> ranges(const std::string& unit) const;
   /// `stable throughout`, `undamped throughout`, `unstable throughout`, `loses stability` (the branch begins stable),
   /// `unstable from its start` (and stable or undamped somewhere), `undamped, then unstable`, `stable or undamped`,
@@ -73,6 +74,7 @@ private:
     double from, to;
     StabilityClass stability;
     bool doubtful;
+    bool of_mesh = false;  // unstable by a wave of the mesh
   };
   [[nodiscard]] std::vector<BranchChange> between(std::size_t point) const;
   [[nodiscard]] std::vector<Stretch> stretches() const;

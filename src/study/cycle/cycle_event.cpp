@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "study/bars/mesh_wave.hpp"
+#include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
@@ -125,11 +127,8 @@ void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
                   b.value, b.unit));
 }
 
-// Beside a fold two multipliers near +1 may seem to cross as a pair. Such a pair is no place that any mesh confirms.
-bool CycleFollower::doubtful_pair(const io::Bifurcation& b, const solve::LocatedEvent& found) {
-  constexpr double small_angle = 0.1;  // rad
-  if (found.event != solve::Event::neimark_sacker || std::isfinite(b.uncertainty)) return false;
-  if (std::abs(std::arg(found.critical)) > small_angle) return false;
+bool CycleFollower::left_as_doubtful(const io::Bifurcation& b, const solve::LocatedEvent& found) {
+  if (!doubtful_pair(found, b.uncertainty)) return false;
   changes_.back().bifurcation = -1;
   ++events_;
   context_.results.summary().suspected.push_back(
@@ -138,6 +137,24 @@ bool CycleFollower::doubtful_pair(const io::Bifurcation& b, const solve::Located
                    "rounding beside a fold",
                    std::abs(std::arg(found.critical)))});
   return true;
+}
+
+// The critical motion of a Neimark-Sacker point is a wave of a film's mesh.
+bool CycleFollower::is_mesh_wave(const solve::LocatedEvent& found, Vec u) {
+  auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
+  if (!cycles || found.event != solve::Event::neimark_sacker || !found.located || !may_have_mesh_waves(*system_))
+    return false;
+  return pieces_->number(piece("wave of the mesh"), [&] {
+    core::Vector row = core::duplicate(u);
+    solve::parameter_row(*problem_, row.get());
+    problem_->linearise(u, row.get());
+    bool wave = false;
+    (void)has_answer([&] {
+      const Eigen::VectorXcd q = solve::neimark_sacker_vector(*cycles, found.critical);
+      if (q.size() == system_->size()) wave = cells_per_wave(*system_, {q.data(), q.data() + q.size()}).has_value();
+    });
+    return wave ? 1.0 : 0.0;
+  }) > 0;
 }
 
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
@@ -165,6 +182,11 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     seed = seed_at(cycle);
     if (options_.follow_flips) seeds_.push_back(*seed);
   }
+  if (is_mesh_wave(found, u)) {
+    changes_.back().bifurcation = BranchChange::of_mesh;
+    ++events_;
+    return;
+  }
   if (found.located) {
     put_bars(b, found, cycle, u);
   } else {
@@ -172,7 +194,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.criticality_by = "not located: lies within the bracket";
     b.uncertainty = found.bracket;
   }
-  if (doubtful_pair(b, found)) return;
+  if (left_as_doubtful(b, found)) return;
   if (seed) {
     const auto twice = twice_the_period(*seed);
     const solve::Restart leaving = leave_flip(*twice, *seed);

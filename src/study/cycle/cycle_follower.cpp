@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "study/bars/mesh_wave.hpp"
 #include "study/bars/open_bore.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
@@ -280,7 +281,12 @@ StudyResult CycleFollower::run() {
   if (end.limited && last_)
     put_contact(results.summary(), end.parameter, unit_, end.bracket, law(), contacts_there(*last_, end.parameter));
   BranchVerdict verdict = record_.verdict();
-  for (const BranchChange& c : changes_) verdict.add(c);
+  MeshWaves waves;
+  for (const BranchChange& c : changes_) {
+    verdict.add(c);
+    if (c.bifurcation == BranchChange::of_mesh) waves.add(c.parameter, {{}});
+  }
+  waves.warn(results.summary(), unit_);
   doubt(verdict);
   conclude(results.summary(), verdict, kind(), unit_);
   warn_without_shaft_mesh(results.summary(), context_.machine, context_.layout);

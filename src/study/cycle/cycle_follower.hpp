@@ -134,7 +134,8 @@ private:
   [[nodiscard]] std::vector<ContactThere> contacts_there(const solve::Cycle& last, double place) const;
   void doubt(BranchVerdict& verdict);
   /// Puts a pair that no mesh confirms among the suspicions instead.
-  [[nodiscard]] bool doubtful_pair(const io::Bifurcation& b, const solve::LocatedEvent& found);
+  [[nodiscard]] bool left_as_doubtful(const io::Bifurcation& b, const solve::LocatedEvent& found);
+  [[nodiscard]] bool is_mesh_wave(const solve::LocatedEvent& found, Vec u);
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
   /// Which rows of a state this rank stores.

@@ -277,6 +277,9 @@ void write_stability(io::Group& group, const solve::Stability& stability) {
   group.put("distance", stability.distance, "1", "from the border of stability");
   group.set("neutral", stability.neutral);
   group.set("missed", stability.missed);
+  std::vector<double> waves;
+  for (const auto& v : stability.mesh_waves) waves.insert(waves.end(), {v.real(), v.imag()});
+  group.put("mesh_waves", waves, "1", "left out: real and imaginary part of each");
 }
 
 solve::Stability read_stability(const io::Group& group) {
@@ -286,6 +289,8 @@ solve::Stability read_stability(const io::Group& group) {
   s.distance = group.reals("distance");
   s.neutral = static_cast<int>(group.integer("neutral"));
   s.missed = static_cast<int>(group.integer("missed"));
+  const auto& waves = group.reals("mesh_waves");
+  for (std::size_t k = 0; k + 1 < waves.size(); k += 2) s.mesh_waves.emplace_back(waves[k], waves[k + 1]);
   return s;
 }
 

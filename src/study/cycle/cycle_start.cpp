@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "study/bars/mesh_wave.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/first_guess.hpp"
@@ -66,10 +65,8 @@ solve::Restart CycleFollower::start_at_hopf() {
   };
   callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
     if (at_hopf || found.event != solve::Event::hopf || !found.located) return;
-    core::Vector here = core::duplicate(x.get());
-    equilibria.to_state(v, here.get());
-    if (mesh_wave_at(*system_, here.get(), std::abs(found.critical.imag()))) return;
-    at_hopf = std::move(here);
+    at_hopf = core::duplicate(x.get());
+    equilibria.to_state(v, at_hopf.get());
     parameter = found.parameter * scale_;
     hopf = found;
   };

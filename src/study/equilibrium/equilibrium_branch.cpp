@@ -21,6 +21,7 @@
 #include "study/first_guess.hpp"
 #include "study/layout.hpp"
 #include "study/located.hpp"
+#include "study/locus/curve_points.hpp"
 #include "study/make_plant.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
@@ -52,27 +53,42 @@ double state_weight_of(const EquilibriumBranchOptions& o) {
 
 namespace {
 
-// Where the branch comes to its contact at `place` on other film meshes; `whole` is its last equilibrium.
+// Where the branch comes to its contact at `place` on other film meshes; `points` are some of its equilibria, the last
+// one among them.
 std::vector<ContactThere> contacts_there(const Context& context, const EquilibriumBranchOptions& options,
-                                         const system::Plant& system, const std::vector<double>& whole, double place,
-                                         double scale, const MarginSlope& here, const solve::NewtonOptions& newton) {
+                                         const system::Plant& system, const std::vector<CurvePoint>& points,
+                                         double place, double scale, const MarginSlope& here,
+                                         const solve::NewtonOptions& newton) {
   std::vector<ContactThere> out;
   for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
     out.push_back({mesh.axis, mesh.spacing, io::no_value});
     const auto other = plant_of(context, options, mesh.factor);
     const FilmLimit films(other->places());
-    core::Vector x = resampled(*other, system, whole);
-    out.back().place = contact_there(place, here, [&](double parameter) {
+    core::Vector x;  // the solution found last
+    const auto margin_from = [&](core::Vector trial) {
       double margin = unknown;
       (void)has_answer([&] {
-        other->set_parameter(parameter * scale);
-        core::Vector trial = core::duplicate(x.get());
-        check(VecCopy(x.get(), trial.get()));
         if (!solve::find_equilibrium(*other, trial.get(), newton).converged) return;
         margin = films.margin(other->observe(trial.get()).film_thickness);
-        std::swap(x, trial);
+        x = std::move(trial);
       });
       return margin;
+    };
+    out.back().place = contact_there(place, here, [&](double parameter) {
+      other->set_parameter(parameter * scale);
+      double margin = unknown;
+      if (x) {
+        core::Vector trial = core::duplicate(x.get());
+        check(VecCopy(x.get(), trial.get()));
+        margin = margin_from(std::move(trial));
+      }
+      if (std::isfinite(margin)) return margin;
+      // Where this mesh touches, that solution is none of the other's: the nearest of the branch may be.
+      const auto& nearest = *std::min_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+        return std::abs(a.cycle.parameter - parameter) < std::abs(b.cycle.parameter - parameter);
+      });
+      const Eigen::MatrixXd& known = nearest.cycle.x;
+      return margin_from(resampled(*other, system, std::vector<double>(known.data(), known.data() + known.size())));
     });
   }
   return out;
@@ -84,7 +100,6 @@ void put_limits(io::StudySummary& summary, const BranchVerdict& verdict, const s
   const auto put = [&](const std::string& name, const BranchChange& c, const std::string& frequency) {
     if (c.bifurcation < 0) return;
     const auto& b = summary.bifurcations[static_cast<std::size_t>(c.bifurcation)];
-    if (is_mesh_wave(b)) return;
     summary.set(name, b.value * scale, unit, {{"uncertainty", b.uncertainty * scale}});
     if (const auto omega = b.more.find("whirl_frequency_rad_s"); omega != b.more.end())
       summary.set(frequency, omega->second, "rad/s",
@@ -166,7 +181,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   const FilmLimit films(places);
   OpenBores bores(context.machine);
   MarginSlope margins;
+  SpreadPoints spread(8);  // for the searches for a contact
+  double arclength = 0;
   MissedModes missed;
+  MeshWaves waves;
   auto& results = context.results;
   put_groups(results.summary(), system->groups());
   solve::BranchCallbacks callbacks;
@@ -192,8 +210,22 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     }
     const auto& s = point.stability;
     margins.add(point.parameter, films.margin(seen.film_thickness));
+    arclength += point.step;
+    if (films.exists()) {
+      const std::vector<double> whole = system->gather(x.get());
+      spread.add({{{0, 1},
+                   Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
+                   0,
+                   point.parameter},
+                  {},
+                  0,
+                  arclength,
+                  static_cast<std::size_t>(point.index)});
+    }
     verdict.add(point.parameter, class_of(s), s.unstable());
     missed.add(s.missed);
+    waves.add(point.parameter, s.mesh_waves);
+    if (!s.mesh_waves.empty()) verdict.doubt(point.index);
     std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
     if (class_of(s) == StabilityClass::undamped) leading.real(0);  // the rest is rounding
     table.append({{point.parameter},
@@ -222,10 +254,6 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     problem.to_state(v, x.get());
     const std::string event = fmt::format("event {}", results.summary().bifurcations.size() + 1);
     pieces.complete(event, b, [&] {
-      const auto wave = found.event == solve::Event::hopf
-                            ? mesh_wave_at(*system, x.get(), std::abs(found.critical.imag()))
-                            : std::nullopt;
-      if (wave) return put_mesh_wave(b, *wave);
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton,
                    film_meshes(context.machine, context.layout), law_of(context.machine, context.layout),
                    [&](const auto& cells) { return plant_of(context, options, cells); },
@@ -234,7 +262,6 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     });
     put_counts(b, changes.back());
     results.summary().bifurcations.push_back(b);
-    if (is_mesh_wave(b)) warn_of_mesh_wave(b, results.summary());
     if (is_followed(context, results.summary().name)) {
       problem.to_state(v, x.get());
       const std::vector<double> whole = system->gather(x.get());
@@ -263,8 +290,6 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
   };
   const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
-  std::vector<double> at_limit;  // the last point
-  if (end.limited) at_limit = system->gather(x.get());
   if (options.parameter.deflation) {
     system->set_parameter(range.from);
     const auto others = put_solutions(results.group(), results.summary(), [&] {
@@ -291,20 +316,14 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   put_changes(group.child("changes"), changes, unit);
   for (const BranchChange& c : changes) verdict.add(c);
   conclude(results.summary(), verdict, {false, false, 1, system::is_rotor(context.machine)}, unit);
-  // A wave of the mesh that grows says nothing about the machine.
-  if (auto& events = results.summary().bifurcations; std::any_of(events.begin(), events.end(), is_mesh_wave)) {
-    results.summary().stability = "undetermined";
-    results.summary().ranges.clear();
-    for (io::Bifurcation& b : events)
-      if (is_mesh_wave(b)) b.sentence.clear();
-  }
   put_limits(results.summary(), verdict, changes, scale, si_unit, system->parameter_is_speed());
   if (end.limited)
     put_contact(
         results.summary(), end.parameter, unit, end.bracket, law_of(context.machine, context.layout),
-        contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
+        contacts_there(context, options, *system, spread.all(), end.parameter, scale, margins, continuation.newton));
   warn_without_shaft_mesh(results.summary(), context.machine, context.layout);
   missed.warn(results.summary());
+  waves.warn(results.summary(), unit);
   bores.warn(results.summary(), unit);
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "study/bars/mesh_wave.hpp"
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
@@ -287,6 +288,9 @@ StudyResult Modes::run(Context& context) {
     for (const double speed : speeds) values.put_speed(summary, station_at(speed));
   values.put_overdamped(group.child("overdamped"), summary, stations);
   missed.warn(summary);
+  MeshWaves waves;
+  for (const double speed : speeds) waves.add(deck::from_si(speed, unit), searches[speed].mesh_waves);
+  waves.warn(summary, unit);
   if (too_few)
     summary.warnings.push_back(fmt::format(
         "at {:.6g} {} the search gave up before it had {} modes in which the machine takes part: 'max_frequency' "

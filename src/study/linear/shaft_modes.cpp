@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/bars/mesh_wave.hpp"
 #include "study/linear/mode_loss.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/spectral/whirl.hpp"
@@ -12,6 +13,8 @@ namespace whirl::study {
 using Complex = std::complex<double>;
 
 namespace {
+
+constexpr double lightly_damped = 0.1;  // damping ratio
 
 bool grows(const spectral::Mode& m) {
   return !m.neutral() && m.lambda.real() > 0;
@@ -48,10 +51,16 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   const auto part_taken = [&](const spectral::Mode& mode) {
     return participation(mode.shape, scale, 2 * system.coordinates());
   };
-  solve::MachineModes found = solve::machine_modes(
-      system, equilibrium, options,
-      {std::isfinite(max_frequency) ? max_frequency : 0, sought,
-       [&](const spectral::Mode& mode) { return !overdamped(mode) && part_taken(mode) >= least_participation; }});
+  const bool waves = may_have_mesh_waves(system);
+  // Waves that fall away at once mislead nobody.
+  const auto of_mesh = [&](const spectral::Mode& mode) {
+    return waves && spectral::damping_ratio(mode.lambda) < lightly_damped && cells_per_wave(system, mode.shape);
+  };
+  solve::MachineModes found =
+      solve::machine_modes(system, equilibrium, options,
+                           {std::isfinite(max_frequency) ? max_frequency : 0, sought, [&](const spectral::Mode& mode) {
+                              return !overdamped(mode) && part_taken(mode) >= least_participation && !of_mesh(mode);
+                            }});
   search = {found.frequency, found.decay, static_cast<double>(found.counted),
             static_cast<double>(found.doubt.empty() ? found.missed : -1), found.gave_up ? 1.0 : 0.0};
   const auto slowest = std::min_element(found.modes.begin(), found.modes.end(), [](const auto& m, const auto& n) {
@@ -97,6 +106,10 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
       search.overdamped.push_back(mode.lambda);
       continue;
     }
+    if (of_mesh(mode)) {
+      search.mesh_waves.push_back(mode.lambda);
+      continue;
+    }
     const bool low = moves && lowest < count && mode.lambda.imag() <= max_frequency;
     if (!low && !growing && (static_cast<int>(more.size()) == beyond || !moves || mode.lambda.imag() > max_frequency))
       continue;
@@ -139,11 +152,13 @@ std::vector<double> pack(std::vector<ShaftMode> modes, const ModeSearch& search)
   flat.push_back(static_cast<double>(modes.size()));
   flat.push_back(modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size()));
   flat.push_back(static_cast<double>(search.overdamped.size()));
+  flat.push_back(static_cast<double>(search.mesh_waves.size()));
   const auto put = [&](Complex v) {
     flat.push_back(v.real());
     flat.push_back(v.imag());
   };
   for (const Complex& s : search.overdamped) put(s);
+  for (const Complex& s : search.mesh_waves) put(s);
   for (ShaftMode& m : modes) {
     put(m.lambda);
     put({m.undamped ? 1.0 : 0.0, m.participation});
@@ -160,13 +175,15 @@ std::vector<ShaftMode> unpack(const std::vector<double>& flat, ModeSearch& searc
   const auto count = static_cast<std::size_t>(flat[ModeSearch::size]),
              nodes = static_cast<std::size_t>(flat[ModeSearch::size + 1]);
   std::vector<ShaftMode> modes(count);
-  std::size_t at = ModeSearch::size + 3;
+  std::size_t at = ModeSearch::size + 4;
   const auto take = [&] {
     at += 2;
     return Complex(flat[at - 2], flat[at - 1]);
   };
   for (std::size_t k = 0; k < static_cast<std::size_t>(flat[ModeSearch::size + 2]); ++k)
     search.overdamped.push_back(take());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(flat[ModeSearch::size + 3]); ++k)
+    search.mesh_waves.push_back(take());
   for (ShaftMode& m : modes) {
     m.lambda = take();
     const Complex facts = take();

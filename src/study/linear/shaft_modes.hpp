@@ -40,6 +40,7 @@ struct ModeSearch {
   double rest_multiplicity = 0, rest_vectors = 0;
   double listed = 0;                               ///< the first modes: those asked for, and all that grow
   std::vector<std::complex<double>> overdamped{};  ///< imag >= 0, the slowest first
+  std::vector<std::complex<double>> mesh_waves{};  ///< lightly damped or growing ones, which are none of the modes
 
   static constexpr std::size_t size = 8;  ///< numbers of a fixed place
 };

@@ -124,7 +124,7 @@ public:
     int number = StableSpeeds::unknown;
     (void)has_answer([&] {
       const Growth growth = growth_at(system_, walker_.at(speed));
-      if (growth.any() || growth.missed == 0) number = growth.count();
+      if (growth.any() || growth.stable()) number = growth.count();
     });
     return number;
   }

@@ -248,7 +248,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec whole) {
     const Row before = last_;
     last_ = row_at(whole, point.parameter);
-    last_.others_unstable = others_unstable(whole);
+    put_others(whole, last_);
     if (cycles_ && cycles_->options().autonomous) {
       last_swing_ = swing(whole);
       last_.amplitude = amplitude_of(last_swing_);

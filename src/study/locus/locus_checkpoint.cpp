@@ -9,16 +9,17 @@ namespace whirl::study {
 void write_rows(io::Group& group, const std::vector<Row>& rows) {
   std::vector<double> flat;
   for (const Row& r : rows)
-    flat.insert(flat.end(),
-                {r.first, r.second, r.period, r.angle, r.amplitude, static_cast<double>(r.others_unstable)});
-  group.put("rows", {rows.size(), 6}, std::move(flat), "SI", "points of the curve");
+    flat.insert(flat.end(), {r.first, r.second, r.period, r.angle, r.amplitude, static_cast<double>(r.others_unstable),
+                             r.mesh_wave});
+  group.put("rows", {rows.size(), 7}, std::move(flat), "SI", "points of the curve");
 }
 
 std::vector<Row> read_rows(const io::Group& group) {
   std::vector<Row> rows;
   const auto& flat = group.reals("rows");
-  for (std::size_t k = 0; k + 5 < flat.size(); k += 6)
-    rows.push_back({flat[k], flat[k + 1], flat[k + 2], flat[k + 3], flat[k + 4], static_cast<int>(flat[k + 5])});
+  for (std::size_t k = 0; k + 6 < flat.size(); k += 7)
+    rows.push_back(
+        {flat[k], flat[k + 1], flat[k + 2], flat[k + 3], flat[k + 4], static_cast<int>(flat[k + 5]), flat[k + 6]});
   return rows;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "study/bars/mesh_wave.hpp"
 #include "study/locus/locus_follower.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -33,12 +34,14 @@ void LocusFollower::put_curve(const std::vector<Row>& rows, const std::vector<Ro
        {"uncertainty_computed", "1", "1: from solutions on other meshes; 0: between those, linear in the arclength"}});
   double low = std::numeric_limits<double>::infinity(), high = -low;
   int marked = 0;
+  MeshWaves waves;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Row& row = rows[k];
     const double there = deck::from_si(row.second, second);
     table.append({deck::from_si(row.first, first), there, row.period, row.angle, row.amplitude,
                   static_cast<double>(row.others_unstable), bars[k].first / deck::number_to_si(1, first),
                   bars[k].second / deck::number_to_si(1, second), bars[k].normal, bars[k].computed ? 1.0 : 0.0});
+    if (row.mesh_wave > 0) waves.add(there, {{0, row.mesh_wave}});
     if (row.others_unstable == 0) continue;
     ++marked;
     low = std::min(low, there);
@@ -50,6 +53,7 @@ void LocusFollower::put_curve(const std::vector<Row>& rows, const std::vector<Ro
         "no border of stability at {} of {} points, second parameter from {:.6g} to {:.6g} {}: others are unstable "
         "there already (others_unstable)",
         marked, rows.size(), low, high, second));
+  waves.warn(summary, second);
   for (const io::Table::Column& column : table.columns())
     summary.curve.push_back({column.name, column.unit, table.column(column.name)});
   table.write(context_.results.group().child("locus"));

@@ -37,6 +37,7 @@ using FilmFactor = std::array<double, 2>;
 struct Row {
   double first = 0, second = 0, period = 0, angle = 0, amplitude = 0;
   int others_unstable = 0;
+  double mesh_wave = 0;  ///< frequency of a growing wave of a film's mesh, which is left out; zero: none
 };
 
 /// The bar of a point of a curve, not a number where it is unknown.
@@ -115,8 +116,8 @@ private:
   // Of the whole curve, the start of which is row `start`: a few are computed, and those between them interpolated.
   [[nodiscard]] std::vector<RowBar> bars_of(const std::vector<Row>& rows, std::size_t start);
   void put_curve(const std::vector<Row>& rows, const std::vector<RowBar>& bars);
-  // Unstable eigenvalues or multipliers beside the critical ones.
-  [[nodiscard]] int others_unstable(Vec whole);
+  // Puts the unstable eigenvalues or multipliers beside the critical ones into `at`.
+  void put_others(Vec whole, Row& at);
   [[nodiscard]] std::vector<double> films(Vec whole) const;
   // The cycle at `whole` as it swings about its mean, and how far a place does.
   [[nodiscard]] Eigen::MatrixXd swing(Vec whole) const;

@@ -25,7 +25,7 @@ std::vector<solve::CodimensionTest> LocusFollower::tests(Vec whole, Vec tangent)
 }
 
 // A Hopf curve along which another mode is unstable already is no border of stability.
-int LocusFollower::others_unstable(Vec whole) {
+void LocusFollower::put_others(Vec whole, Row& at) {
   core::Vector left = core::duplicate(whole);
   problem_->residual(whole, left.get());  // sets both parameters
   const core::Vector u = problem_->branch_part(whole);
@@ -45,6 +45,7 @@ int LocusFollower::others_unstable(Vec whole) {
     core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
     rest_->to_state(u.get(), x.get());
     all = equilibrium_stability(*system_, x.get());
+    for (const auto& w : all.mesh_waves) at.mesh_wave = std::max(at.mesh_wave, w.imag());
     const double omega = seed_.event == solve::Event::hopf ? problem_->inner(whole)(0) : 0;
     critical.emplace_back(0, omega);
     if (omega != 0) critical.emplace_back(0, -omega);
@@ -58,9 +59,8 @@ int LocusFollower::others_unstable(Vec whole) {
         nearest = k;
     if (nearest < taken.size()) taken[nearest] = true;
   }
-  int count = 0;
-  for (std::size_t k = 0; k < all.values.size(); ++k) count += !taken[k] && all.distance[k] > 0;
-  return count;
+  at.others_unstable = 0;
+  for (std::size_t k = 0; k < all.values.size(); ++k) at.others_unstable += !taken[k] && all.distance[k] > 0;
 }
 
 std::vector<double> LocusFollower::films(Vec whole) const {

@@ -188,7 +188,9 @@ private:
     }
     if (record_.verdict().kind == transient::Kind::fixed_point) {
       integrator_.state(start_.x.get());
-      if (const Growth growth = growth_at(system_, start_.x.get()); growth.any()) record_.set_growth(growth.words());
+      const Growth growth = growth_at(system_, start_.x.get());
+      if (growth.any()) record_.set_growth(growth.words());
+      warn_of_waves(growth, "about the fixed point", summary);
     }
     auto& group = results.group();
     group.set("speed", options_.speed.value);

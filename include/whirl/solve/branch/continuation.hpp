@@ -47,6 +47,9 @@ struct Stability {
   std::vector<double> distance;
   int neutral = 0;  ///< values on the border as far as rounding can tell; none of them counts as unstable
   int missed = 0;   ///< eigenvalues that a count found and the search did not; -1 if the count itself is not sure
+  /// Growing pairs (imag > 0) that belong to the mesh of a discretisation and not to what it stands for: not among
+  /// `values`.
+  std::vector<std::complex<double>> mesh_waves{};
 
   [[nodiscard]] int unstable() const {
     int n = 0;

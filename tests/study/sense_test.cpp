@@ -1,0 +1,130 @@
+// What the equations do not know: walls where a bore is open, and waves that a film's mesh does not resolve.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "study/bars/mesh_wave.hpp"
+#include "study/bars/open_bore.hpp"
+#include "support/half_rotor.hpp"
+#include "whirl/film/options.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+using namespace whirl;
+using Complex = std::complex<double>;
+
+namespace {
+
+constexpr double deg = std::numbers::pi / 180, clearance = 1e-4;
+
+system::Machine machine_with(std::vector<film::Geometry> bores) {
+  system::Machine machine;
+  machine.rotor.type = rotor::Options::Type::rigid;
+  machine.rotor.mass = 1;
+  machine.lubricants["oil"] = {0.01, 860};
+  for (const film::Geometry& g : bores) {
+    system::Bearing& b = machine.bearings.emplace_back();
+    b.name = "B" + std::to_string(machine.bearings.size());
+    b.node = 1;
+    b.geometry = g;
+    b.film = film::Reynolds{};
+    b.lubricant = "oil";
+  }
+  return machine;
+}
+
+film::Geometry bore(film::Geometry::Bore type, double arc) {
+  film::Geometry g{type, 0.05, 0.05, clearance, 0, 0, 0};
+  g.arc = arc;
+  return g;
+}
+
+std::vector<std::string> warned(const system::Machine& machine, std::size_t place, double x, double y,
+                                const std::string& unit = "rpm") {
+  study::OpenBores bores(machine);
+  bores.see(place, x * clearance, y * clearance, 2800);
+  bores.see(place, 0.3 * x * clearance, 0.3 * y * clearance, 3000);
+  io::StudySummary summary;
+  bores.warn(summary, unit);
+  return summary.warnings;
+}
+
+}  // namespace
+
+TEST(OpenBores, WarnsOfAJournalWhereNoPadIs) {
+  using enum film::Geometry::Bore;
+  const auto machine = machine_with({bore(partial_arc, 150 * deg), bore(lemon_bore, 80 * deg), bore(cylindrical, 0)});
+  EXPECT_FALSE(study::OpenBores(machine).empty());
+  // Above an arc below: 2.1 clearances from the centre.
+  const auto above = warned(machine, 0, 0.1, 2.1);
+  ASSERT_EQ(above.size(), 1U);
+  for (const char* part : {"bearing B1", "2.1 clearances", "2800 rpm", "one pad of 150 deg"})
+    EXPECT_NE(above[0].find(part), std::string::npos) << above[0];
+  EXPECT_EQ(warned(machine, 0, 0.1, 2.1, "")[0].find("rpm"), std::string::npos);
+  // Between two pads: 2.2 clearances to the side.
+  const auto between = warned(machine, 1, -2.2, 0.2);
+  ASSERT_EQ(between.size(), 1U);
+  for (const char* part : {"bearing B2", "2.2 clearances", "two pads of 80 deg"})
+    EXPECT_NE(between[0].find(part), std::string::npos) << between[0];
+}
+
+TEST(OpenBores, SaysNothingOfAJournalInItsBoreOrOverAPad) {
+  using enum film::Geometry::Bore;
+  const auto machine = machine_with({bore(partial_arc, 150 * deg), bore(lemon_bore, 80 * deg), bore(cylindrical, 0)});
+  EXPECT_TRUE(warned(machine, 0, 0, 0.95).empty()) << "within a clearance";
+  EXPECT_TRUE(warned(machine, 0, 0.3, -1.4).empty()) << "over the arc: that is contact";
+  EXPECT_TRUE(warned(machine, 1, 0.2, 1.5).empty()) << "over the upper pad";
+  EXPECT_TRUE(warned(machine, 2, 0, 2.5).empty()) << "a whole circle has a wall everywhere";
+  EXPECT_TRUE(study::OpenBores(machine_with({bore(cylindrical, 0)})).empty());
+  // A lemon bore of two nearly half circles leaves no gap worth the name.
+  EXPECT_TRUE(study::OpenBores(machine_with({bore(lemon_bore, 150 * deg)})).empty());
+}
+
+// Thicknesses as one wave of n cells around, and others at rest.
+TEST(MeshWaves, AreToldByTheCellsInAWave) {
+  for (const int cells : {12, 40, 240}) {
+    film::CompliantShort film;
+    film.compliance = 0.1;
+    film.reference_speed = 160;
+    film.cells = {cells, 4};
+    system::Train train = test::half_rotor(film, 0);
+    train.supports[0].name = "half";
+    system::RotorSystem system(PETSC_COMM_SELF, train, 160);
+    ASSERT_TRUE(study::may_have_mesh_waves(system));
+    const auto found = [&](double n) {
+      std::vector<Complex> shape(static_cast<std::size_t>(system.size()), 0);
+      PetscInt first = 0;
+      for (const problem::Field& f : system.fields())
+        if (f.quantity == "thickness") first = f.begin;
+      for (int k = 0; k < cells; ++k)
+        shape[static_cast<std::size_t>(first + k)] = 1e-6 * std::polar(1.0, 2 * std::numbers::pi * k / n);
+      return study::cells_per_wave(system, shape);
+    };
+    for (const double n : {2.0, 3.0}) {
+      ASSERT_TRUE(found(n)) << cells;
+      EXPECT_NEAR(*found(n), n, 0.06 * n) << cells;
+    }
+    EXPECT_EQ(found(7).has_value(), cells > 12) << "of few cells a third is as short as waves come";
+    for (const double n : {9.0, static_cast<double>(cells)}) EXPECT_FALSE(found(n)) << n << " of " << cells;
+    EXPECT_FALSE(study::cells_per_wave(system, std::vector<Complex>(static_cast<std::size_t>(system.size()), 0)));
+  }
+  system::RotorSystem rigid(PETSC_COMM_SELF, test::half_rotor(film::Short{}, 0), 160);
+  EXPECT_FALSE(study::may_have_mesh_waves(rigid));
+}
+
+TEST(MeshWaves, AreSaidOnce) {
+  study::MeshWaves waves;
+  io::StudySummary summary;
+  waves.warn(summary, "N");
+  EXPECT_TRUE(summary.warnings.empty());
+  waves.add(2.1, {{0.5, 711}});
+  waves.add(1.9, {{0.2, 705}, {0.1, 551}});
+  waves.add(1.8, {});
+  waves.warn(summary, "N");
+  ASSERT_EQ(summary.warnings.size(), 1U);
+  for (const char* part :
+       {"at 1.9 to 2.1 N", "up to 2 waves of the film's mesh (551 to 711 rad/s)", "differences: upwind"})
+    EXPECT_NE(summary.warnings[0].find(part), std::string::npos) << summary.warnings[0];
+}
