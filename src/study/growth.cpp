@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "study/bars/mesh_wave.hpp"
+#include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -24,6 +25,10 @@ std::string Growth::words() const {
   return out;
 }
 
+const char* Growth::verdict() const {
+  return any() ? "unstable" : !all_known() ? "undetermined" : undamped > 0 ? "undamped" : "stable";
+}
+
 Growth growth_of(const solve::Stability& stability) {
   Growth out;
   out.undamped = stability.neutral;
@@ -41,15 +46,18 @@ Growth growth_of(const solve::Stability& stability) {
   return out;
 }
 
-Growth growth_at(system::Plant& system, Vec x) {
-  return growth_of(equilibrium_stability(system, x));
+std::optional<Growth> growth_at(system::Plant& system, Vec x, std::string* reason) {
+  std::optional<Growth> out;
+  (void)has_answer([&] { out = growth_of(equilibrium_stability(system, x)); }, reason);
+  return out;
 }
 
-std::vector<double> packed(const Growth& growth) {
-  std::vector<double> out{static_cast<double>(growth.missed), static_cast<double>(growth.real.size()),
-                          static_cast<double>(growth.mesh_waves.size())};
-  out.insert(out.end(), growth.real.begin(), growth.real.end());
-  for (const auto* values : {&growth.mesh_waves, &growth.pairs})
+std::vector<double> packed(const std::optional<Growth>& growth) {
+  if (!growth) return {};
+  std::vector<double> out{static_cast<double>(growth->missed), static_cast<double>(growth->undamped),
+                          static_cast<double>(growth->real.size()), static_cast<double>(growth->mesh_waves.size())};
+  out.insert(out.end(), growth->real.begin(), growth->real.end());
+  for (const auto* values : {&growth->mesh_waves, &growth->pairs})
     for (const std::complex<double>& s : *values) out.insert(out.end(), {s.real(), s.imag()});
   return out;
 }
@@ -60,12 +68,13 @@ void put_growth(const std::vector<double>& packed, const std::string& where, con
   if (packed.empty()) return;
   Growth growth;
   growth.missed = static_cast<int>(packed[0]);
-  const auto complex = packed.begin() + 3 + static_cast<std::ptrdiff_t>(packed[1]);
-  growth.real.assign(packed.begin() + 3, complex);
-  const auto waves = static_cast<std::size_t>(packed[2]);
+  growth.undamped = static_cast<int>(packed[1]);
+  const auto complex = packed.begin() + 4 + static_cast<std::ptrdiff_t>(packed[2]);
+  growth.real.assign(packed.begin() + 4, complex);
+  const auto waves = static_cast<std::size_t>(packed[3]);
   for (auto at = complex; at != packed.end(); at += 2)
     (growth.mesh_waves.size() < waves ? growth.mesh_waves : growth.pairs).emplace_back(at[0], at[1]);
-  if (growth.any() || growth.stable()) summary.stability = growth.any() ? "unstable" : "stable";
+  summary.stability = growth.verdict();
   warn_of(growth, where, consequence, summary);
 }
 

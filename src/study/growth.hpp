@@ -2,6 +2,7 @@
 // What grows about an equilibrium.
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,21 +24,26 @@ struct Growth {
   [[nodiscard]] bool any() const { return !real.empty() || !pairs.empty(); }
   /// Unstable eigenvalues, both of each pair.
   [[nodiscard]] int count() const { return static_cast<int>(real.size() + 2 * pairs.size()); }
-  /// Nothing grows, and nothing is known to be missing or left out. Undamped equilibria count as stable.
-  [[nodiscard]] bool stable() const { return !any() && missed == 0 && mesh_waves.empty(); }
+  /// Likewise; -1 where the verdict is "undetermined".
+  [[nodiscard]] int known_count() const { return any() || all_known() ? count() : -1; }
+  /// "unstable", "undetermined" (nothing grows among the eigenvalues found, and some may be missing or were left out),
+  /// "undamped" or "stable".
+  [[nodiscard]] const char* verdict() const;
+  /// None is known to be missing, and none was left out.
+  [[nodiscard]] bool all_known() const { return missed == 0 && mesh_waves.empty(); }
   /// "it diverges (s = +311.3 1/s)", "an oscillation grows (181.2 Hz, log decrement -0.00917)", with the number of
   /// those that grow where there are several; empty if nothing grows.
   [[nodiscard]] std::string words() const;
 };
 
 [[nodiscard]] Growth growth_of(const solve::Stability& stability);
-/// Of the equilibrium x at the system's parameter. Cost: one eigenvalue problem without vectors. Collective; throws
-/// core::NotConverged.
-[[nodiscard]] Growth growth_at(system::Plant& system, Vec x);
-/// As numbers that ranks and pieces of a checkpoint hold.
-[[nodiscard]] std::vector<double> packed(const Growth& growth);
-/// Verdict of a linear study at one speed, "stable", "unstable" or "undetermined" (nothing is known, or eigenvalues may
-/// be missing), from packed(); with warn_of() its warning.
+/// Of the equilibrium x at the system's parameter; nothing where the search finds no eigenvalues, with the reason.
+/// Cost: one eigenvalue problem without vectors. Collective.
+[[nodiscard]] std::optional<Growth> growth_at(system::Plant& system, Vec x, std::string* reason = nullptr);
+/// As numbers that ranks and pieces of a checkpoint hold; none where nothing is known.
+[[nodiscard]] std::vector<double> packed(const std::optional<Growth>& growth);
+/// Verdict of a linear study at one speed, "undetermined" where nothing is known, from packed(); with warn_of() its
+/// warning.
 void put_growth(const std::vector<double>& packed, const std::string& where, const std::string& consequence,
                 io::StudySummary& summary);
 /// Adds the warning "WHERE the equilibrium is unstable: ..., CONSEQUENCE" if something grows; `where` as "at 3600 rpm".

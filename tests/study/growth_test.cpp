@@ -42,7 +42,7 @@ TEST(Growth, CountsRealAndComplexEigenvalues) {
   EXPECT_EQ(g.real, (std::vector<double>{7, 5, 1e-12}));
   ASSERT_EQ(g.pairs.size(), 1U);
   EXPECT_EQ(g.count(), 5);
-  EXPECT_FALSE(g.stable());
+  EXPECT_STREQ(g.verdict(), "unstable");
   EXPECT_EQ(
       g.words(),
       "it diverges (s = +7 1/s, the fastest of 3 real eigenvalues), and an oscillation grows (10 Hz, log decrement "
@@ -57,8 +57,14 @@ TEST(Growth, CountsRealAndComplexEigenvalues) {
   study::put_growth({}, "", "", silent);
   EXPECT_EQ(missed.stability, "undetermined");
   EXPECT_EQ(silent.stability, "undetermined");
-  const auto none = growth({{-3, 0}, {-1, 4}, {-1, -4}});
-  EXPECT_TRUE(none.stable());
+  auto none = growth({{-3, 0}, {-1, 4}, {-1, -4}});
+  EXPECT_STREQ(none.verdict(), "stable");
+  EXPECT_EQ(none.known_count(), 0);
+  none.undamped = 2;
+  EXPECT_STREQ(none.verdict(), "undamped");
+  none.missed = 1;
+  EXPECT_STREQ(none.verdict(), "undetermined");
+  EXPECT_EQ(none.known_count(), -1);
   EXPECT_EQ(none.words(), "");
   io::StudySummary summary;
   study::warn_of(none, "at 100 rpm", "no", summary);
@@ -96,6 +102,35 @@ TEST(UnstableRanges, LieBetweenCrossings) {
   EXPECT_NEAR(ranges[1].from, 150, 1e-3);
   EXPECT_NEAR(ranges[1].to, 420, 1e-3);
   EXPECT_TRUE(ranges[1].begin_crossing && ranges[1].end_crossing);
+}
+
+// A mode that is listed where it grows alone begins and ends there: only a look beyond the list finds its limits.
+TEST(UnstableRanges, AreFoundOutsideTheList) {
+  std::vector<study::Station> stations;
+  for (const double speed : {100.0, 200.0, 300.0, 400.0}) {
+    study::Station s{speed, true};
+    if (at(speed, 150, 320).real() > 0) s.modes = {mode(at(speed, 150, 320), 1)};
+    s.listed = s.modes.size();
+    stations.push_back(std::move(s));
+  }
+  const auto all = [](double speed) { return std::vector{mode({-1, 900}, 0), mode(at(speed, 150, 320), 0)}; };
+  const auto ranges_of = [&] {
+    const auto crossings = study::crossings_of(stations);
+    std::vector<study::CrossingPoint> points;
+    for (const auto& c : crossings) points.push_back(study::locate(c, all));
+    return study::unstable_ranges(stations, crossings, points);
+  };
+  const auto seen = ranges_of();
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_FALSE(seen[0].begins || seen[0].from_start || seen[0].to_end);
+  EXPECT_TRUE(study::lost_modes(stations, [](const ShaftMode&, double) { return false; }).empty());
+  const auto lost = study::lost_modes(stations, [](const ShaftMode&, double) { return true; });
+  ASSERT_EQ(lost.size(), 2U);
+  for (const auto& l : lost) study::put_back(l, all(stations[l.station].speed), stations);
+  const auto found = ranges_of();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].from, 150, 1e-3);
+  EXPECT_NEAR(found[0].to, 320, 1e-3);
 }
 
 // Undamped at rest, unstable as soon as it turns: no crossing, and yet it begins there.
