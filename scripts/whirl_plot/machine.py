@@ -71,14 +71,19 @@ def draw_elements(axis, deck, place, low, high):
 
 
 def draw_loads(axis, deck, place, high):
-    """An arrow on the node of each static load, along y if it has a part there, with its size."""
+    """An arrow along y on the node of each static load, with its size; what acts along x, out of the drawing, is a circle with a number."""
     for load in deck.get("loads") or []:
         at = place(load.get("node"))
         force = [number(f) or 0.0 for f in load.get("force") or [0, 0]]
-        size = np.hypot(*force)
-        if at is None or not size:
+        if at is None or not any(force[:2]):
             continue
-        down = force[1] <= 0
+        if force[0]:
+            axis.plot(at, 0, marker="o", markersize=6, markerfacecolor="white", markeredgecolor=INK, zorder=8)
+            axis.plot(at, 0, marker="." if force[0] > 0 else "x", markersize=4, color=INK, zorder=9)
+            axis.annotate(f"{force[0]:.4g} N along x", (at, 0), xytext=(6, 4), textcoords="offset points", fontsize=7.5, color=INK, zorder=9)
+        if not force[1]:
+            continue
+        size, down = abs(force[1]), force[1] < 0
         ends = (0.95 * high, 0.05 * high) if down else (-0.95 * high, -0.05 * high)
         axis.annotate("", (at, ends[1]), (at, ends[0]), arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.4}, zorder=8)
         axis.annotate(f"{size:.4g} N", (at, ends[0]), ha="center", va="bottom" if down else "top", fontsize=7.5, color=INK)

@@ -10,7 +10,7 @@ from .locus import WORDS as LOCUS_WORDS
 from .margins import MARGIN_HEAD, margin_cells, margin_note, operating_in
 from .response import number, peaks_at
 from .style import speed_axis
-from .units import WORDS, digits, person, quantity, scale_of, with_bar
+from .units import WORDS, digits, number as number_of, person, quantity, scale_of, with_bar
 
 
 class Table(typing.NamedTuple):
@@ -322,6 +322,15 @@ def applied_unbalance(results):
     return amounts, masses
 
 
+def stiffness_of(element):
+    """K xx, xy, yx, yy of an element: K_xy holds its cross-coupling, K_yx the negative of it."""
+    given, cross = element.get("stiffness"), number_of(element.get("cross_coupling"))
+    if not cross:
+        return given
+    k = [number_of(v) or 0.0 for v in given or [0] * 4]
+    return [f"{v:.12g} N/m" for v in (k[0], k[1] + cross, k[2] - cross, k[3])]
+
+
 def inputs(results):
     """Tables of what was computed: bearings, lubricants, unbalance, from the deck as it was understood."""
     deck = results.deck
@@ -346,6 +355,7 @@ def inputs(results):
     rows = []
     matrix = lambda e, key: " ".join(quantity(v) for v in e.get(key) or []) if any(str(v)[:2] not in ("0", "0 ") for v in e.get(key) or []) else ""  # noqa: E731
     for name, e in (deck.get("elements") or {}).items():
+        e = {**e, "stiffness": stiffness_of(e)}
         end = f"node {e['to_node']}" if e.get("to_node") else f"pedestal of {e['to_pedestal']}" if e.get("to_pedestal") else "ground"
         carries = e.get("static_load", e.get("role") in ("support", "other"))
         rows.append([name, e.get("role", ""), e.get("node", ""), end, "yes" if carries is True or str(carries) == "true" else "no",

@@ -208,6 +208,9 @@ def facts():
     assert margin_cells((0.2, None), (0.0, None), "damped, not critical") == ["20", "none", "damped"]
     assert margin_cells((None, None), (None, None), "") == ["\u2013", "\u2013", "\u2013"]
     assert not response.is_answer({"notes": ["undetermined: it stands 0.1 um above"]})
+    from whirl_plot.tables import stiffness_of
+    assert stiffness_of({"stiffness": ["6e6 N/m", "1 N/m", "0 N/m", "6e6 N/m"], "cross_coupling": "2500000 N/m"}) == ["6000000 N/m", "2500001 N/m", "-2500000 N/m", "6000000 N/m"]
+    assert stiffness_of({"cross_coupling": "5 N/m"}) == ["0 N/m", "5 N/m", "-5 N/m", "0 N/m"] and stiffness_of({"stiffness": ["1 N/m"]}) == ["1 N/m"]
     assert units.with_bar(5021.412, 6.93) == "5021.4 \u00b1 6.9" and units.with_bar(2.7353, 1.9e-11) == "2.7353"
     assert units.person(1.8e-4, "m") == "180 \u00b5m" and units.person(2.134e5, "N") == "213.4 kN" and units.quantity("0.0067 Pa s") == "6.7 mPa s"
     assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"

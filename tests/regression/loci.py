@@ -12,7 +12,7 @@ import sys
 
 import h5py
 import numpy as np
-from harness import Harness
+from harness import BARS, Harness
 
 SPEED, CLEARANCE = 160.0, 25.0  # rad/s, um: one unit of Omega* and of a*
 
@@ -71,14 +71,15 @@ def generalised_flips(h, found):
     deck.write_text(BORN.format(base=(h.source / "inputs/rigid_rotor/short_f1.yaml").resolve()))
     lower, upper = found[0][1] * CLEARANCE, found[-1][1] * CLEARANCE
     for eccentricity in (lower - 0.1, upper - 0.1, upper + 0.1):
-        run = h.run(deck, f"born_{eccentricity:.3f}", overrides=[f"unbalance.a.planes.1.eccentricity={eccentricity:.6f} um"], bars=True)
+        run = h.run(deck, f"born_{eccentricity:.3f}", overrides=[f"unbalance.a.planes.1.eccentricity={eccentricity:.6f} um"])
         flips = [b for b in run["branch"]["bifurcations"] if b["type"] == "flip"]
         for flip, turns in zip(flips, (lower, upper)):
             h.true(f"flip at {flip['value']:.1f} rad/s, {eccentricity:.3f} um: compared with its branch",
                    flip.get("branch_curvature") is not None, flip.get("criticality_by"))
-            h.true(f"flip at {flip['value']:.1f} rad/s, {eccentricity:.3f} um",
-                   flip.get("criticality") == ("subcritical" if eccentricity < turns else "supercritical"),
-                   flip.get("criticality"))
+            # The sign of the branch's curvature; at night its bar decides, too.
+            wanted, coefficient = "subcritical" if eccentricity < turns else "supercritical", flip.get("criticality_coefficient")
+            h.true(f"flip at {flip['value']:.1f} rad/s, {eccentricity:.3f} um: {wanted}", coefficient and (coefficient > 0) == (wanted == "subcritical")
+                   and flip.get("criticality") == (wanted if BARS else "undetermined"), f"{coefficient}, {flip.get('criticality')}")
         h.true(f"two flips at {eccentricity:.3f} um", len(flips) == 2, len(flips))
 
 

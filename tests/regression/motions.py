@@ -164,7 +164,7 @@ SHORT = """
 def growing(h):
     """The train at G6.3: a whirl at 766 +- 12 rpm (independent computation, Guyan, 30 x 10) leaves the unstable cycle of 2650 rpm,
     and settles on a torus at 2600 rpm, beyond the supercritical Neimark-Sacker point."""
-    found = h.run(h.source / "inputs/turbine_train/motions.yaml", "growing", launcher=[])
+    found = h.run(h.source / "inputs/turbine_train/motions.yaml", "growing", launcher=[], bars=False)
     s = found["G6.3 at 2650 rpm"]
     h.true("the cycle is unstable", value(s, "cycle.multiplier.1.modulus") > 1)
     whirl = value(s, "cycle.multiplier.1.angle") / TWO_PI * 2650
