@@ -32,7 +32,7 @@ std::string count(std::size_t n, const std::string& what, const std::string& plu
 std::string changes_text(const std::vector<deck::Change>& changes) {
   constexpr std::size_t most = 20;
   auto brief = [](const std::string& s) {
-    return s.empty() ? std::string("nothing") : s.size() > 60 ? s.substr(0, 57) + "..." : s;
+    return s.empty() ? std::string("nothing") : s.size() > 60 ? fmt::format("{}...", s.substr(0, 57)) : s;
   };
   std::string text;
   for (std::size_t i = 0; i < std::min(most, changes.size()); ++i)

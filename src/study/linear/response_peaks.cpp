@@ -1,5 +1,7 @@
 #include "study/linear/response_peaks.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,11 +44,11 @@ std::array<std::optional<Side>, 2> sides_of(const ResponseCurve& curve, std::siz
       s == 0 ? --outer : ++outer;
     if (value(outer) > level) {
       if (reason && reason->empty())
-        *reason = std::string("the response does not fall to 0.707 of the peak ") + (s == 0 ? "below" : "above") +
-                  " it before " +
-                  (value(outer) > higher ? "a higher peak rises"
-                   : s == 0              ? "the range begins"
-                                         : "the range ends");
+        *reason =
+            fmt::format("the response does not fall to 0.707 of the peak {} it before {}", s == 0 ? "below" : "above",
+                        value(outer) > higher ? "a higher peak rises"
+                        : s == 0              ? "the range begins"
+                                              : "the range ends");
       continue;
     }
     const std::size_t inner = s == 0 ? outer + 1 : outer - 1;
