@@ -201,6 +201,7 @@ TEST(Condensed, AStiffLinerIsARigidBore) {
     o.compliance = compliance;
     o.reference_speed = 300.0;
     o.cells = {400, 4};
+    o.differences = Compliant::Differences::central;
     const auto film = make_film(cylinder(), o, oil());
     const Response r = evaluate(*film, m);
     double force = 0.0, damping = 0.0, size = 0.0;

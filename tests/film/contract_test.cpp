@@ -33,6 +33,7 @@ Options soft(Kind o, std::array<int, 2> cells) {
   o.compliance = 0.1;
   o.reference_speed = 300.0;
   o.cells = cells;
+  o.differences = Compliant::Differences::central;
   return o;
 }
 

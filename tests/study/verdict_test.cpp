@@ -56,6 +56,25 @@ TEST(Verdict, OfAWaveOfTheMeshIsOpen) {
   EXPECT_EQ(threshold(both, {wave, gone, whirl}), 5600);
 }
 
+// Waves of the mesh grow at the points 1 to 3, where the wavering film has a fold and a Hopf point, too.
+TEST(Verdict, OfAFilmThatIsNotResolvedIsOpen) {
+  const BranchChange fold{2, 5, 0, 1, 1, true, 0}, hopf{3, 4.5, 1, 3, -1, false, 1}, early{0, 1.5, 0, 2, 1, false, 0};
+  auto v = verdict_of({{1, 0}, {2, 0}, {4, 0}, {4.8, 1}, {4, 3}}, {fold, hopf});
+  for (const int k : {1, 2, 3, 4}) v.unresolved(k);
+  EXPECT_EQ(v.text(), "undetermined");
+  EXPECT_EQ(v.ranges("").front().stability, "stable");
+  for (std::size_t k = 1; k < v.ranges("").size(); ++k) EXPECT_EQ(v.ranges("")[k].stability, "undetermined") << k;
+  EXPECT_TRUE(v.limits().empty());
+  EXPECT_TRUE(v.open_at(0) && v.open_at(1));
+  // What is known before stays.
+  auto loses = verdict_of({{1, 0}, {2, 2}, {4, 2}}, {early});
+  loses.unresolved(2);
+  EXPECT_EQ(loses.text(), "loses stability");
+  EXPECT_EQ(words(loses), "stable 1..1.5; unstable 1.5..2; undetermined 4..4; ");
+  EXPECT_EQ(loses.limits().size(), 1U);
+  EXPECT_FALSE(loses.open_at(0));
+}
+
 // Two multipliers near +1 by rounding, beside a fold: no other mesh has such a pair.
 TEST(Verdict, TellsPairsBesideAFoldFromBifurcations) {
   whirl::solve::LocatedEvent pair{whirl::solve::Event::neimark_sacker, 1, 0, 0, std::polar(1.0, 0.02)};

@@ -61,6 +61,7 @@ inline system::Train train_on_liners(std::array<int, 2> cells, double compliance
     film.compliance = compliance;
     film.reference_speed = 377;
     film.cells = cells;
+    film.differences = film::Compliant::Differences::central;
     s.film = film;
   }
   return t;

@@ -133,6 +133,7 @@ inline system::Machine whole_machine() {
   m.bearings.push_back(bearing("B1", 1, content, partial_arc));
   film::CompliantFinite liner;
   liner.cells = {16, 6};
+  liner.differences = film::Compliant::Differences::central;
   liner.liner = film::Liner{2e-3, 1e9, 0.4};
   liner.liner_damping = 1e-4;
   liner.contact = film::Contact{2e-5, 1e12};
@@ -140,6 +141,7 @@ inline system::Machine whole_machine() {
   m.bearings[1].lubricant = film::Lubricant{0.015, 900};
   film::CompliantShort thick;
   thick.cells = {24, 4};
+  thick.differences = film::Compliant::Differences::central;
   thick.compliance = 0.1;
   thick.reference_speed = 300;
   thick.rubber_thickness = 5e-4;

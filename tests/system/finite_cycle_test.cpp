@@ -89,6 +89,7 @@ TEST(FiniteFilmCycle, NewtonPicardEqualsDenseShootingInAMix) {
   film.compliance = 0.2;
   film.reference_speed = test::finite_speed_scale;
   film.cells = {24, 4};
+  film.differences = film::Compliant::Differences::central;
   train.supports.insert(train.supports.begin(), train.supports[0]);
   train.supports[0].film = film;
   train.supports[0].name = "other";
@@ -105,6 +106,7 @@ TEST(FiniteFilmCycle, RanksWithoutStatesGoAlong) {
   film.compliance = 0.1;
   film.reference_speed = test::finite_speed_scale;
   film.cells = {12, 4};
+  film.differences = film::Compliant::Differences::central;
   train.supports[0].film = film;
   system::RotorSystem s(MPI_COMM_WORLD, train, speed), alone(PETSC_COMM_SELF, train, speed);
   int least = s.local_size();

@@ -29,6 +29,7 @@ film::CompliantShort short_film() {
   film.compliance = 0.05;
   film.reference_speed = 377;
   film.cells = {12, 5};
+  film.differences = film::Compliant::Differences::central;
   return film;
 }
 
@@ -37,6 +38,7 @@ system::Train cut_ring() {
   ring.compliance = 0.1;
   ring.reference_speed = 160;
   ring.cells = {12, 4};
+  ring.differences = film::Compliant::Differences::central;
   system::Train t = test::half_rotor(ring, 0);
   system::Support pad = t.supports[0];
   pad.geometry.type = film::Geometry::Bore::partial_arc;

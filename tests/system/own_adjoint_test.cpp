@@ -25,6 +25,7 @@ system::Train train(int cells, double liner_damping) {
   film.compliance = 0.1;
   film.reference_speed = omega_0;
   film.cells = {cells, 4};
+  film.differences = film::Compliant::Differences::central;
   film.liner_damping = liner_damping;
   return test::half_rotor(film, 0.2 * clearance);
 }

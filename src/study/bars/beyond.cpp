@@ -159,7 +159,13 @@ void conclude(io::StudySummary& summary, const BranchVerdict& verdict, const Bra
               const std::string& unit) {
   summary.stability = verdict.text();
   summary.ranges = verdict.ranges(unit);
-  for (io::Bifurcation& b : summary.bifurcations) {
+  for (std::size_t k = 0; k < summary.bifurcations.size(); ++k) {
+    io::Bifurcation& b = summary.bifurcations[k];
+    if (verdict.open_at(static_cast<int>(k))) {
+      b.criticality = "undetermined";
+      b.criticality_by = "the film is not resolved here";
+      continue;
+    }
     // The Hopf point that cycles are born at is one of the equilibria.
     const bool on_branch = !(kind.cycles && b.type == Type::hopf);
     const bool again = std::any_of(summary.ranges.begin(), summary.ranges.end(), [&](const io::StabilityRange& r) {

@@ -80,12 +80,22 @@ std::vector<BranchChange> BranchVerdict::between(std::size_t point) const {
   return out;
 }
 
+bool BranchVerdict::open_at(const BranchChange& change) const {
+  return unresolved_.contains(change.after) || unresolved_.contains(change.after + 1);
+}
+
+bool BranchVerdict::open_at(int bifurcation) const {
+  return std::any_of(changes_.begin(), changes_.end(),
+                     [&](const BranchChange& c) { return c.bifurcation == bifurcation && open_at(c); });
+}
+
 std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
   std::vector<Stretch> out;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& here = points_[i];
-    if (out.empty() || out.back().stability != here.stability)
-      out.push_back({here.parameter, here.parameter, here.stability, false});
+    const bool open = unresolved_.contains(static_cast<int>(i));
+    if (out.empty() || out.back().stability != here.stability || (!unresolved_.empty() && out.back().of_mesh != open))
+      out.push_back({here.parameter, here.parameter, here.stability, false, open});
     out.back().to = here.parameter;
     out.back().doubtful =
         out.back().doubtful || std::find(doubts_.begin(), doubts_.end(), static_cast<int>(i)) != doubts_.end();
@@ -103,7 +113,8 @@ std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
                                                : StabilityClass::stable;
       const double end = last ? here.parameter : c.parameter;
       if (c.fold || next != out.back().stability)
-        out.push_back({c.parameter, end, next, false, c.bifurcation == BranchChange::of_mesh && c.behind > c.before});
+        out.push_back({c.parameter, end, next, false,
+                       open_at(c) || (c.bifurcation == BranchChange::of_mesh && c.behind > c.before)});
     }
   }
   std::optional<StabilityClass> first;
@@ -153,7 +164,9 @@ std::vector<StabilityLimit> BranchVerdict::limits() const {
   std::vector<StabilityLimit> out;
   for (std::size_t k = 0; k < changes_.size(); ++k) {
     const BranchChange& c = changes_[k];
-    if (std::min(c.before, c.behind) > 0 || c.before == c.behind || c.bifurcation == BranchChange::of_mesh) continue;
+    if (std::min(c.before, c.behind) > 0 || c.before == c.behind || c.bifurcation == BranchChange::of_mesh ||
+        open_at(c))
+      continue;
     out.push_back({k, c.fold ? turns_below(c) : c.below() == 0});
   }
   std::stable_sort(out.begin(), out.end(), [&](const auto& a, const auto& b) {

@@ -1,6 +1,7 @@
 #pragma once
 // What a branch as a whole says about stability: where it is stable, and where that ends.
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,10 @@ public:
   /// The error of the discretisation leaves open whether this point is stable. It counts where all points are of one
   /// class: beside a located change the next points are doubtful by nature.
   void doubt(int point) { doubts_.push_back(point); }
+  /// The film is not resolved at this point: whatever is stable or changes beside it is undetermined.
+  void unresolved(int point) { unresolved_.insert(point); }
+  /// Whether a change lies beside such a point, by its place among the bifurcations of the summary.
+  [[nodiscard]] bool open_at(int bifurcation) const;
 
   /// Stretches of one class in the order of the branch, each from change to change; cut at folds. `undetermined`: all
   /// points are of one class, and one on this stretch is doubtful; or a wave of the mesh grows there. Between two
@@ -74,14 +79,16 @@ private:
     double from, to;
     StabilityClass stability;
     bool doubtful;
-    bool of_mesh = false;  // unstable by a wave of the mesh
+    bool of_mesh = false;  // a wave of the mesh grows, or the film is not resolved
   };
   [[nodiscard]] std::vector<BranchChange> between(std::size_t point) const;
   [[nodiscard]] std::vector<Stretch> stretches() const;
   [[nodiscard]] bool turns_below(const BranchChange& fold) const;
   std::vector<Point> points_;
   std::vector<BranchChange> changes_;
+  [[nodiscard]] bool open_at(const BranchChange& change) const;
   std::vector<int> doubts_;
+  std::set<int> unresolved_;
 };
 
 /// The limit that is the threshold of a speed: the lowest one below which nothing is unstable. -1 if there is none.

@@ -225,7 +225,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     verdict.add(point.parameter, class_of(s), s.unstable());
     missed.add(s.missed);
     waves.add(point.parameter, s.mesh_waves);
-    if (!s.mesh_waves.empty()) verdict.doubt(point.index);
+    if (!s.mesh_waves.empty()) verdict.unresolved(point.index);
     std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
     if (class_of(s) == StabilityClass::undamped) leading.real(0);  // the rest is rounding
     table.append({{point.parameter},
