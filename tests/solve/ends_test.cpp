@@ -39,6 +39,38 @@ TEST(NaturalContinuation, EndsAtAFoldWithTheReason) {
   EXPECT_GT(r.points.back().parameter, -1e-4);
 }
 
+// Beyond a kink p = 2 x: a branch that leaves its bifurcation along x turns by 70 degrees at once, however short its
+// first step. It is followed; a turn like that between two points is not.
+TEST(Start, ABranchThatLeavesItsBifurcationAskewIsFollowed) {
+  for (const int last : {-1, 0}) {
+    test::SmallSystem s(MPI_COMM_WORLD, 2, 0, 1, []<class T>(double, const Column<T>& x, const Column<T>& xdot, T p) {
+      Column<T> f(2);
+      f << xdot(0) + 2.0 * x(0) - p, xdot(1) + x(1);
+      return f;
+    });
+    solve::EquilibriumProblem problem(s, 1, 1);
+    test::Recorded r;
+    auto callbacks = test::recording(problem, r);
+    callbacks.stability = [](Vec) { return solve::make_stability({}, [](test::Complex z) { return z.real(); }); };
+    const core::Vector at = s.vector(Eigen::Vector2d::Zero()), along = s.vector(Eigen::Vector2d::UnitX());
+    solve::Restart restart;
+    restart.u = problem.make_unknown();
+    restart.tangent = problem.make_unknown();
+    problem.from_state(at.get(), 0, restart.u.get());
+    problem.from_state(along.get(), 0, restart.tangent.get());
+    core::check(VecScale(restart.tangent.get(),
+                         1 / std::sqrt(solve::inner(problem, restart.tangent.get(), restart.tangent.get()))));
+    restart.step = 0.1;
+    restart.point.index = last;
+    r.end = solve::follow_branch(problem, {}, test::range(0, 1, 0.1), callbacks, std::move(restart));
+    EXPECT_EQ(r.end.completed, last < 0) << r.end.reason;
+    if (last < 0)
+      EXPECT_GE(r.points.size(), 5U);
+    else
+      EXPECT_NE(r.end.reason.find("turns too sharply"), std::string::npos) << r.end.reason;
+  }
+}
+
 TEST(NaturalContinuation, FindsTheSameBifurcations) {
   // A Hopf normal form at p = 0.3, met in steps of the parameter.
   test::SmallSystem s(MPI_COMM_WORLD, 2, -1, 1, []<class T>(double, const Column<T>& x, const Column<T>& xdot, T p) {
