@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -23,6 +24,10 @@ std::string Growth::words() const {
   return out;
 }
 
+const char* Growth::verdict() const {
+  return any() ? "unstable" : missed != 0 ? "undetermined" : undamped > 0 ? "undamped" : "stable";
+}
+
 Growth growth_of(const solve::Stability& stability) {
   Growth out;
   out.undamped = stability.neutral;
@@ -39,8 +44,10 @@ Growth growth_of(const solve::Stability& stability) {
   return out;
 }
 
-Growth growth_at(system::Plant& system, Vec x) {
-  return growth_of(equilibrium_stability(system, x));
+std::optional<Growth> growth_at(system::Plant& system, Vec x, std::string* reason) {
+  std::optional<Growth> out;
+  (void)has_answer([&] { out = growth_of(equilibrium_stability(system, x)); }, reason);
+  return out;
 }
 
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence,

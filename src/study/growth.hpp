@@ -2,6 +2,7 @@
 // What grows about an equilibrium.
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,17 +23,20 @@ struct Growth {
   [[nodiscard]] bool any() const { return !real.empty() || !pairs.empty(); }
   /// Unstable eigenvalues, both of each pair.
   [[nodiscard]] int count() const { return static_cast<int>(real.size() + 2 * pairs.size()); }
-  /// Nothing grows, and no eigenvalue is known to be missing. Undamped equilibria count as stable.
-  [[nodiscard]] bool stable() const { return !any(); }
+  /// Likewise; -1 where the verdict is "undetermined".
+  [[nodiscard]] int known_count() const { return any() || missed == 0 ? count() : -1; }
+  /// "unstable", "undetermined" (nothing grows among the eigenvalues found, and some may be missing), "undamped" or
+  /// "stable".
+  [[nodiscard]] const char* verdict() const;
   /// "it diverges (s = +311.3 1/s)", "an oscillation grows (181.2 Hz, log decrement -0.00917)", with the number of
   /// those that grow where there are several; empty if nothing grows.
   [[nodiscard]] std::string words() const;
 };
 
 [[nodiscard]] Growth growth_of(const solve::Stability& stability);
-/// Of the equilibrium x at the system's parameter. Cost: one eigenvalue problem without vectors. Collective; throws
-/// core::NotConverged.
-[[nodiscard]] Growth growth_at(system::Plant& system, Vec x);
+/// Of the equilibrium x at the system's parameter; nothing where the search finds no eigenvalues, with the reason.
+/// Cost: one eigenvalue problem without vectors. Collective.
+[[nodiscard]] std::optional<Growth> growth_at(system::Plant& system, Vec x, std::string* reason = nullptr);
 /// Adds the warning "WHERE the equilibrium is unstable: ..., CONSEQUENCE" if something grows; `where` as "at 3600 rpm".
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence, io::StudySummary& summary);
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "whirl/study/linear/unbalance_response.hpp"
+
 namespace whirl::study {
 
 std::vector<std::string> machine_warnings(const system::Machine& machine) {
@@ -26,17 +28,22 @@ std::vector<std::string> machine_warnings(const system::Machine& machine) {
 }
 
 std::vector<std::string> table_warnings(const system::Machine& machine, const Study& study) {
-  const std::vector<double> speeds = study.speeds();
+  std::vector<double> speeds = study.speeds();
   if (speeds.empty() || !system::is_rotor(machine)) return {};
+  // A response is asked for at the service speed of the machine too, unless it names another one.
+  const auto* response = dynamic_cast<const UnbalanceResponse*>(&study);
+  const bool serves = response && !response->options.operating_speed && machine.service_speed;
+  if (serves) speeds.push_back(machine.service_speed->value);
   const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
+  const std::string asked = *least == *most ? fmt::format("the speed {:.6g} rad/s", *least)
+                                            : fmt::format("speeds from {:.6g} to {:.6g} rad/s", *least, *most);
   std::vector<std::string> lines;
   const auto known = [&](const std::string& what, double from, double to, bool holds) {
     const double rounding = 1e-9 * to;
     if (*least >= from - rounding && *most <= to + rounding) return;
     lines.push_back(
-        fmt::format("'{}' asks for speeds from {:.6g} to {:.6g} rad/s, and the table of {} goes from "
-                    "{:.6g} to {:.6g} rad/s: beyond it {}",
-                    study.name(), *least, *most, what, from, to,
+        fmt::format("'{}' asks for {}{}, and the table of {} goes from {:.6g} to {:.6g} rad/s: beyond it {}",
+                    study.name(), asked, serves ? " (service_speed among them)" : "", what, from, to,
                     holds ? "the coefficients of its nearest end are kept (extrapolate: hold)"
                           : "there is no answer; 'extrapolate: hold' keeps the coefficients of its nearest "
                             "end"));

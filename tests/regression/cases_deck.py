@@ -165,7 +165,7 @@ def beyond(h):
     table = ("bearings.a.film.table=[{speed: 0 rad/s, k_xx: 1e6 N/m, k_yy: 1e6 N/m}, {speed: 100 rad/s, k_xx: 3e6 N/m, k_yy: 3e6 N/m}]")
     study = "studies=[{static: {name: in, speed: 100 rad/s}}, {static: {name: out, speed: 150 rad/s}}]"
     told = say(h, "check", deck, "--set", table, study)
-    words = "'out' asks for speeds from 150 to 150 rad/s, and the table of bearing a goes from 0 to 100 rad/s: beyond it "
+    words = "'out' asks for the speed 150 rad/s, and the table of bearing a goes from 0 to 100 rad/s: beyond it "
     h.true("check says it", words + "there is no answer" in told and "'in' asks" not in told, told)
     found = h.run(deck, "unknown", [table, study], code=3)
     h.true("without an option there is no answer", "extrapolate: hold" in found["out"]["status"], found["out"]["status"])

@@ -42,13 +42,19 @@ TEST(Growth, CountsRealAndComplexEigenvalues) {
   EXPECT_EQ(g.real, (std::vector<double>{7, 5, 1e-12}));
   ASSERT_EQ(g.pairs.size(), 1U);
   EXPECT_EQ(g.count(), 5);
-  EXPECT_FALSE(g.stable());
+  EXPECT_STREQ(g.verdict(), "unstable");
   EXPECT_EQ(
       g.words(),
       "it diverges (s = +7 1/s, the fastest of 3 real eigenvalues), and an oscillation grows (10 Hz, log decrement "
       "-0.2)");
-  const auto none = growth({{-3, 0}, {-1, 4}, {-1, -4}});
-  EXPECT_TRUE(none.stable());
+  auto none = growth({{-3, 0}, {-1, 4}, {-1, -4}});
+  EXPECT_STREQ(none.verdict(), "stable");
+  EXPECT_EQ(none.known_count(), 0);
+  none.undamped = 2;
+  EXPECT_STREQ(none.verdict(), "undamped");
+  none.missed = 1;
+  EXPECT_STREQ(none.verdict(), "undetermined");
+  EXPECT_EQ(none.known_count(), -1);
   EXPECT_EQ(none.words(), "");
   io::StudySummary summary;
   study::warn_of(none, "at 100 rpm", "no", summary);

@@ -17,7 +17,7 @@ std::vector<double> speeds(int n) {
 
 TEST(StableSpeeds, TheBorderIsFoundBetweenNeighboursByFewCounts) {
   std::size_t asked = 0;
-  const StableSpeeds stable(speeds(1000), [&](const std::vector<double>& at) {
+  const StableSpeeds stable(speeds(1000), {}, [&](const std::vector<double>& at) {
     asked += at.size();
     std::vector<int> out;
     for (const double s : at) out.push_back(s < 637 ? 0 : s < 900 ? 2 : 4);
@@ -42,7 +42,7 @@ TEST(StableSpeeds, TheBorderIsFoundBetweenNeighboursByFewCounts) {
 
 TEST(StableSpeeds, WhatIsNotKnownIsUndetermined) {
   const auto all = [](int number) {
-    return StableSpeeds(speeds(5), [number](const auto& at) { return std::vector<int>(at.size(), number); });
+    return StableSpeeds(speeds(5), {}, [number](const auto& at) { return std::vector<int>(at.size(), number); });
   };
   io::StudySummary stable, unknown, unstable;
   put_verdict(stable, all(0), "rad/s");
@@ -54,6 +54,24 @@ TEST(StableSpeeds, WhatIsNotKnownIsUndetermined) {
   EXPECT_EQ(unknown.warnings.size(), 1U);
   EXPECT_EQ(unstable.stability, "unstable throughout");
   EXPECT_EQ(unstable.warnings.size(), 1U);
+}
+
+// A stretch between two counted speeds is seen from a speed inside it that is always counted, up to its borders.
+TEST(StableSpeeds, WhatMattersIsAlwaysCounted) {
+  const auto window = [](const std::vector<double>& at) {
+    std::vector<int> out;
+    for (const double s : at) out.push_back(s > 500 && s < 514 ? 2 : 0);
+    return out;
+  };
+  const StableSpeeds seen(speeds(1000), {507}, window), unseen(speeds(1000), {900}, window);
+  EXPECT_EQ(seen.at(501), 2);
+  EXPECT_EQ(seen.at(513), 2);
+  EXPECT_EQ(seen.at(500), 0);
+  EXPECT_EQ(seen.at(514), 0);
+  EXPECT_EQ(unseen.counted(), 14U);
+  io::StudySummary summary;
+  put_verdict(summary, unseen, "rad/s");
+  EXPECT_EQ(summary.stability, "stable at the 14 speeds counted");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/film_at_rest.hpp"
 #include "study/common.hpp"
@@ -173,7 +174,7 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
 }
 
 // Throws core::NotConverged with what the film carries, of a rotor whose whole weight is on one.
-[[noreturn]] void tell_capacity(const Context& context, const system::Train& train, double speed,
+[[noreturn]] void tell_capacity(const Context& context, const system::Train& train, const deck::Quantity& speed,
                                 const core::NotConverged& error) {
   const rotor::Options& r = train.rotor;
   const double load = system::load_of_rigid(train);
@@ -181,11 +182,12 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
   if (!downwards || r.type != rotor::Options::Type::rigid || train.supports.size() != 1 || !(load > 0)) throw error;
   Capacity most;
   core::agree(context.comm, [&] {
-    if (!has_answer([&] { most = FilmAtRest(train.supports.front(), speed).capacity({0, -load}); })) most = {};
+    if (!has_answer([&] { most = FilmAtRest(train.supports.front(), speed.value).capacity({0, -load}); })) most = {};
   });
   if (!(most.load > 0)) throw error;
-  throw core::NotConverged(
-      fmt::format("no equilibrium under {:.6g} N at {:.6g} rad/s: {}. {}", load, speed, error.what(), in_words(most)));
+  throw core::NotConverged(fmt::format("no equilibrium under {:.6g} N at {:.6g} {}: {}. {}", load,
+                                       deck::from_si(speed.value, speed.unit), speed.unit, error.what(),
+                                       in_words(most)));
 }
 
 }  // namespace
@@ -198,23 +200,34 @@ StudyResult Static::run(Context& context) {
   try {
     at = walker.at(options.speed.value);
   } catch (const core::NotConverged& error) {
-    tell_capacity(context, system.train(), options.speed.value, error);
+    tell_capacity(context, system.train(), options.speed, error);
   }
   const std::vector<double> x = system.gather(at);
   const auto journals = system.journals(x.data());
+  OpenBores bores(context.machine);
+  for (std::size_t b = 0; b < journals.size(); ++b)
+    bores.see(b, journals[b].position[0], journals[b].position[1], options.speed.value);
   const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
   auto& summary = context.results.summary();
   auto& group = context.results.group();
 
+  const std::string where =
+      fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit);
   FilmLimit(system.places()).warn(system.observe(at).film_thickness, "at rest", summary);
+  bores.warn(summary, "");
   put_values(context, system, at, summary);
-  const Growth growth = growth_at(system, at);
+  std::string reason;
+  const std::optional<Growth> growth = growth_at(system, at, &reason);
   // Equilibria know of no loss factor.
-  if (context.machine.rotor.loss_factor == 0)
-    group.set("unstable_count", growth.any() || growth.missed == 0 ? growth.count() : -1);
-  warn_of(growth, fmt::format("at {:.6g} rad/s", options.speed.value),
-          "The machine does not stay where these results show it", summary);
+  if (context.machine.rotor.loss_factor == 0) {
+    group.set("unstable_count", growth ? growth->known_count() : -1);
+    group.set("stability", growth ? growth->verdict() : "undetermined");
+  }
+  if (growth)
+    warn_of(*growth, where, "The machine does not stay where these results show it", summary);
+  else
+    summary.warnings.push_back(fmt::format("{} it is not known whether the equilibrium is stable: {}", where, reason));
   // Of all that the summary holds so far: what follows has no mesh.
   put_bars(context, system, options.speed.value, x);
   warn_of_films(summary, system.train());

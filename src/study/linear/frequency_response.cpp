@@ -89,16 +89,17 @@ public:
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
-  // What grows about the equilibrium: real parts, then pairs, behind the numbers of missed and of real ones; nothing if
-  // that could not be computed.
+  // What grows about the equilibrium: real parts, then pairs, behind the numbers of missed, undamped and real ones;
+  // nothing if that could not be computed.
   std::vector<double> growing() {
     std::vector<double> out;
-    (void)has_answer([&] {
-      const Growth growth = growth_at(system_, walker_.at(options_.speed.value));
-      out = {static_cast<double>(growth.missed), static_cast<double>(growth.real.size())};
-      out.insert(out.end(), growth.real.begin(), growth.real.end());
-      append(out, growth.pairs);
-    });
+    std::optional<Growth> growth;
+    (void)has_answer([&] { growth = growth_at(system_, walker_.at(options_.speed.value)); });
+    if (!growth) return out;
+    out = {static_cast<double>(growth->missed), static_cast<double>(growth->undamped),
+           static_cast<double>(growth->real.size())};
+    out.insert(out.end(), growth->real.begin(), growth->real.end());
+    append(out, growth->pairs);
     return out;
   }
 
@@ -220,13 +221,14 @@ void put_growth(const std::vector<double>& found, const std::string& where, io::
   if (found.empty()) return;
   Growth growth;
   growth.missed = static_cast<int>(found[0]);
-  const auto real = static_cast<std::size_t>(found[1]);
-  for (std::size_t k = 2; k < found.size(); k += k < 2 + real ? 1 : 2)
-    if (k < 2 + real)
+  growth.undamped = static_cast<int>(found[1]);
+  const auto real = static_cast<std::size_t>(found[2]);
+  for (std::size_t k = 3; k < found.size(); k += k < 3 + real ? 1 : 2)
+    if (k < 3 + real)
       growth.real.push_back(found[k]);
     else
       growth.pairs.emplace_back(found[k], found[k + 1]);
-  if (growth.any() || growth.missed == 0) summary.stability = growth.any() ? "unstable" : "stable";
+  summary.stability = growth.verdict();
   warn_of(growth, where, "No vibration settles into these transfer functions", summary);
 }
 

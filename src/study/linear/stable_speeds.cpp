@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include "whirl/deck/units.hpp"
 
@@ -16,11 +18,16 @@ constexpr std::size_t few = 13;
 
 }  // namespace
 
-StableSpeeds::StableSpeeds(std::vector<double> speeds, const Count& count) : speeds_(std::move(speeds)) {
+StableSpeeds::StableSpeeds(std::vector<double> speeds, const std::vector<double>& always, const Count& count)
+    : speeds_(std::move(speeds)) {
   const std::size_t n = speeds_.size();
   std::map<std::size_t, int> counted;  // by place
-  std::vector<std::size_t> next;
-  for (std::size_t k = 0; k < std::min(few, n); ++k) next.push_back(n <= few ? k : k * (n - 1) / (few - 1));
+  std::set<std::size_t> first;
+  for (std::size_t k = 0; k < std::min(few, n); ++k) first.insert(n <= few ? k : k * (n - 1) / (few - 1));
+  for (const double speed : always)
+    if (const auto at = std::lower_bound(speeds_.begin(), speeds_.end(), speed); at != speeds_.end() && *at == speed)
+      first.insert(static_cast<std::size_t>(at - speeds_.begin()));
+  std::vector<std::size_t> next(first.begin(), first.end());
   while (!next.empty()) {
     std::vector<double> at;
     for (const std::size_t k : next) at.push_back(speeds_[k]);
@@ -30,6 +37,7 @@ StableSpeeds::StableSpeeds(std::vector<double> speeds, const Count& count) : spe
     for (auto a = counted.begin(), b = std::next(a); b != counted.end(); ++a, ++b)
       if (a->second != b->second && b->first - a->first > 1) next.push_back((a->first + b->first) / 2);
   }
+  counted_ = counted.size();
   for (std::size_t k = 0; k < n; ++k) numbers_.push_back(std::prev(counted.upper_bound(k))->second);
 }
 
@@ -55,7 +63,10 @@ std::vector<StableSpeeds::Stretch> StableSpeeds::stretches() const {
 void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit) {
   const auto stretches = stable.stretches();
   if (stretches.empty()) return;
-  if (stretches.size() == 1) summary.stability = stretches.front().stability + " throughout";
+  if (stretches.size() == 1)
+    summary.stability = stretches.front().stability +
+                        (stable.all_counted() ? std::string(" throughout")
+                                              : fmt::format(" at the {} speeds counted", stable.counted()));
   std::string verdict;
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     const StableSpeeds::Stretch& s = stretches[k];

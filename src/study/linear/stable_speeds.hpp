@@ -9,9 +9,9 @@
 
 namespace whirl::study {
 
-/// Numbers of eigenvalues that grow about the equilibria over rising speeds. They are counted at some of the speeds,
-/// and between two of these that differ by halves: a stretch with another number that lies between two with one number
-/// is not seen.
+/// Numbers of eigenvalues that grow about the equilibria over rising speeds. They are counted at 13 of the speeds, at
+/// those that matter most, and between two of these that differ by halves. Other speeds take the number of the counted
+/// ones beside them: a stretch with another number between two of these is not seen.
 class StableSpeeds {
 public:
   static constexpr int unknown = -1;  ///< eigenvalues may be missing, or could not be computed
@@ -19,10 +19,13 @@ public:
   using Count = std::function<std::vector<int>(const std::vector<double>& speeds)>;
 
   StableSpeeds() = default;
-  /// Of rising speeds. Calls `count` a few times.
-  StableSpeeds(std::vector<double> speeds, const Count& count);
+  /// Of rising speeds; `always`: those of them that are counted in any case. Calls `count` a few times.
+  StableSpeeds(std::vector<double> speeds, const std::vector<double>& always, const Count& count);
 
   [[nodiscard]] bool known() const { return !speeds_.empty(); }
+  /// How many speeds were counted, and whether these are all.
+  [[nodiscard]] std::size_t counted() const { return counted_; }
+  [[nodiscard]] bool all_counted() const { return counted_ == speeds_.size(); }
   /// At one of the speeds.
   [[nodiscard]] int at(double speed) const;
   /// "stable", "unstable", "undetermined" of a number.
@@ -38,9 +41,11 @@ public:
 private:
   std::vector<double> speeds_;
   std::vector<int> numbers_;
+  std::size_t counted_ = 0;
 };
 
-/// Puts the verdict over the speeds, shown in `unit`, and a warning that names where the equilibrium is unstable or not
+/// Puts the verdict over the speeds, shown in `unit`: "stable throughout" if all were counted and are, "stable at the N
+/// speeds counted" if these are. And a warning that names where the equilibrium is unstable or not
 /// known: there no vibration settles into the linear response, and margins mean nothing.
 void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit);
 

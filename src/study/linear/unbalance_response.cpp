@@ -121,12 +121,9 @@ public:
 
   // Eigenvalues that grow about the equilibrium at a speed, StableSpeeds::unknown where some may be missing.
   int growing(double speed) {
-    int number = StableSpeeds::unknown;
-    (void)has_answer([&] {
-      const Growth growth = growth_at(system_, walker_.at(speed));
-      if (growth.any() || growth.missed == 0) number = growth.count();
-    });
-    return number;
+    std::optional<Growth> growth;
+    (void)has_answer([&] { growth = growth_at(system_, walker_.at(speed)); });
+    return growth ? growth->known_count() : StableSpeeds::unknown;
   }
 
   [[nodiscard]] system::ShownPlaces places() const { return system_.places(); }
@@ -199,15 +196,23 @@ void judge(const io::StudySummary& summary, Listed& peak) {
   entry.verdict = "undetermined";
 }
 
-// Equilibria know of no loss factor: of such shafts nothing is asked.
-StableSpeeds stability(const Context& context, const std::vector<Response>& curve,
+// At the operating speed and at all peaks in any case. Equilibria know of no loss factor: of such shafts nothing is
+// asked.
+StableSpeeds stability(const Context& context, const std::vector<Response>& curve, const std::vector<Place>& places,
                        const std::optional<deck::Quantity>& operating, const StableSpeeds::Count& count) {
   if (context.machine.rotor.loss_factor > 0) return {};
-  std::vector<double> speeds = speeds_of(curve);
-  if (operating) speeds.push_back(operating->value);
+  std::vector<double> speeds = speeds_of(curve), always;
+  if (operating) {
+    speeds.push_back(operating->value);
+    always.push_back(operating->value);
+  }
+  for (const Place& place : places) {
+    const ResponseCurve of = curve_at(curve, place.of, place.at);
+    for (const std::size_t k : of.tops()) always.push_back(of.speed[k]);
+  }
   std::ranges::sort(speeds);
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
-  return {std::move(speeds), count};
+  return {std::move(speeds), always, count};
 }
 
 // What the summary has of a peak with its bars.
@@ -225,7 +230,9 @@ void put_stability(io::Group& group, io::StudySummary& summary, const std::vecto
   std::vector<std::int64_t> numbers;
   for (const Response& r : curve) numbers.push_back(stable.at(r.speed));
   group.child("response")
-      .put("unstable_count", numbers, "eigenvalues that grow about the equilibrium; -1: some may be missing");
+      .put("unstable_count", numbers,
+           "eigenvalues that grow about the equilibrium, between the speeds counted as beside them; -1: some may be "
+           "missing");
   put_verdict(summary, stable, unit);
   if (operating) summary.set("operating_speed.unstable_count", stable.at(operating->value), "1");
 }
@@ -301,16 +308,17 @@ StudyResult UnbalanceResponse::run(Context& context) {
 
   const auto operating = operating_range(options.operating, options.operating_speed, context.machine.service_speed);
   const auto& operating_speed = options.operating_speed ? options.operating_speed : context.machine.service_speed;
-  const StableSpeeds stable = stability(context, curve, operating_speed, [&](const std::vector<double>& speeds) {
-    const auto compute = [&](std::size_t i) {
-      return std::vector<double>{static_cast<double>(machine.growing(speeds[i]))};
-    };
-    std::vector<int> out;
-    for (const auto& one :
-         distribute(layout, speeds.size(), compute, pieces, fmt::format("{} stability", ++calls), machine.trail()))
-      out.push_back(static_cast<int>(one.front()));
-    return out;
-  });
+  const StableSpeeds stable =
+      stability(context, curve, places, operating_speed, [&](const std::vector<double>& speeds) {
+        const auto compute = [&](std::size_t i) {
+          return std::vector<double>{static_cast<double>(machine.growing(speeds[i]))};
+        };
+        std::vector<int> out;
+        for (const auto& one :
+             distribute(layout, speeds.size(), compute, pieces, fmt::format("{} stability", ++calls), machine.trail()))
+          out.push_back(static_cast<int>(one.front()));
+        return out;
+      });
 
   const auto put_peak = [&](io::StudySummary& to, const std::string& head, double speed, double height, double factor) {
     const io::PeakEntry entry = entry_of("", {speed, height, factor, {}, {}}, unit, operating);
@@ -354,17 +362,25 @@ StudyResult UnbalanceResponse::run(Context& context) {
     put_peak(summary, first.head, first.speed, first.height, first.amplification);
     named.push_back(std::move(first));
   }
-  if (operating_speed) put_operating(names, nodes, at_speeds({operating_speed->value}).front(), summary);
+  // A speed outside the range may have no answer: the others keep theirs.
+  std::string reason;
+  const bool operating_known =
+      operating_speed &&
+      has_answer([&] { put_operating(names, nodes, at_speeds({operating_speed->value}).front(), summary); }, &reason);
+  if (operating_speed && !operating_known)
+    summary.warnings.push_back(fmt::format(
+        "no response at the {} of {:.6g} {}: {}", options.operating_speed ? "operating_speed" : "service_speed",
+        deck::from_si(operating_speed->value, operating_speed->unit), operating_speed->unit, reason));
   std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   if (has_shaft_mesh(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
   put_response_bars(summary, meshes, law_of(context.machine, context.layout), named, put_peak,
                     [&](const FilmMesh& mesh, std::vector<double> at, const std::string& piece) {
                       std::optional<Responder> other;
                       if (mesh.spacing != 1) other.emplace(context, layout, options, nodes, mesh);
-                      if (operating_speed) at.push_back(operating_speed->value);
+                      if (operating_known) at.push_back(operating_speed->value);
                       std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
                       MeshResponse out;
-                      if (operating_speed) {
+                      if (operating_known) {
                         put_operating(names, nodes, all.back(), out.operating);
                         all.pop_back();
                       }

@@ -188,7 +188,11 @@ private:
     }
     if (record_.verdict().kind == transient::Kind::fixed_point) {
       integrator_.state(start_.x.get());
-      if (const Growth growth = growth_at(system_, start_.x.get()); growth.any()) record_.set_growth(growth.words());
+      std::string reason;
+      const std::optional<Growth> growth = growth_at(system_, start_.x.get(), &reason);
+      if (growth && growth->any()) record_.set_growth(growth->words());
+      if (!growth)
+        summary.warnings.push_back("it is not known whether the place where the motion rests is stable: " + reason);
     }
     auto& group = results.group();
     group.set("speed", options_.speed.value);
