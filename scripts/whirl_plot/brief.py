@@ -53,7 +53,9 @@ def unstable_from(study, factor, unit):
     """Where the modes become unstable: the value of summary.json, else the two computed speeds that it lies between."""
     if "threshold" in study.values:
         v = study.values["threshold"]
-        return [f"unstable from {with_bar(v.value, v.uncertainty)} {v.unit}"]
+        first = next(iter(study.summary.get("ranges", [])), {})
+        low = f"up to {digits(first['to'], 5)} and " if first.get("stability") == "unstable" and first["to"] < v.value else ""
+        return [f"unstable {low}from {with_bar(v.value, v.uncertainty)} {v.unit}"]
     speed, every = study.get("spectrum/speed"), np.unique(study.get("spectrum/speed"))
     known = study.get("spectrum/stability")
     unstable = np.unique(speed[study.get("spectrum/log_decrement") < 0 if known is None else np.isin(known, ("unstable", "diverges"))])
@@ -69,7 +71,8 @@ def unstable_from(study, factor, unit):
 def unbalance_response(study):
     if not study.has("response/speed", "response/semi_major"):
         return []
-    said = [study.summary["stability"]] if study.summary.get("stability", "stable throughout") != "stable throughout" else []
+    stability = study.summary.get("stability", "stable")
+    said = [] if stability.startswith("stable") else [stability]
     known = [p for p in study.peaks if number(p, "semi_major") is not None and number(p, "speed") is not None and str(p.get("place")).startswith("node ")]
     found = [p for p in known if is_answer(p)]
     if not known:

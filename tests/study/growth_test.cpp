@@ -94,6 +94,35 @@ TEST(UnstableRanges, LieBetweenCrossings) {
   EXPECT_TRUE(ranges[1].begin_crossing && ranges[1].end_crossing);
 }
 
+// A mode that is listed where it grows alone begins and ends there: only a look beyond the list finds its limits.
+TEST(UnstableRanges, AreFoundOutsideTheList) {
+  std::vector<study::Station> stations;
+  for (const double speed : {100.0, 200.0, 300.0, 400.0}) {
+    study::Station s{speed, true};
+    if (at(speed, 150, 320).real() > 0) s.modes = {mode(at(speed, 150, 320), 1)};
+    s.listed = s.modes.size();
+    stations.push_back(std::move(s));
+  }
+  const auto all = [](double speed) { return std::vector{mode({-1, 900}, 0), mode(at(speed, 150, 320), 0)}; };
+  const auto ranges_of = [&] {
+    const auto crossings = study::crossings_of(stations);
+    std::vector<study::CrossingPoint> points;
+    for (const auto& c : crossings) points.push_back(study::locate(c, all));
+    return study::unstable_ranges(stations, crossings, points);
+  };
+  const auto seen = ranges_of();
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_FALSE(seen[0].begins || seen[0].from_start || seen[0].to_end);
+  EXPECT_TRUE(study::lost_modes(stations, [](const ShaftMode&, double) { return false; }).empty());
+  const auto lost = study::lost_modes(stations, [](const ShaftMode&, double) { return true; });
+  ASSERT_EQ(lost.size(), 2U);
+  for (const auto& l : lost) study::put_back(l, all(stations[l.station].speed), stations);
+  const auto found = ranges_of();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].from, 150, 1e-3);
+  EXPECT_NEAR(found[0].to, 320, 1e-3);
+}
+
 // Undamped at rest, unstable as soon as it turns: no crossing, and yet it begins there.
 TEST(UnstableRanges, BeginWhereAModeIsUndamped) {
   std::vector<study::Station> stations;

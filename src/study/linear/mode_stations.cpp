@@ -77,10 +77,33 @@ std::vector<Crossing> crossings_of(const std::vector<Station>& stations) {
       if (!b) continue;
       for (const Border border : {Border::critical, Border::stability}) {
         const double f0 = beyond(border, b->lambda, before.speed), f1 = beyond(border, m.lambda, stations[i].speed);
-        if (f0 * f1 < 0) out.push_back({border, before.speed, stations[i].speed, f0, f1, m, i});
+        if (f0 * f1 < 0)
+          out.push_back({border, before.speed, stations[i].speed, f0, f1, m, i, b->put_back || m.put_back});
       }
     }
   return out;
+}
+
+std::vector<LostMode> lost_modes(const std::vector<Station>& stations,
+                                 const std::function<bool(const ShaftMode&, double)>& grows) {
+  std::vector<LostMode> out;
+  for (std::size_t i = 0; i < stations.size(); ++i)
+    for (const ShaftMode& m : stations[i].modes) {
+      if (m.id <= 0 || !m.grows() || !grows(m, stations[i].speed)) continue;
+      if (i > 0 && !mode_with(m.id, stations[i - 1])) out.push_back({m, i - 1});
+      if (i + 1 < stations.size() && !mode_with(m.id, stations[i + 1])) out.push_back({m, i + 1});
+    }
+  return out;
+}
+
+void put_back(const LostMode& lost, const std::vector<ShaftMode>& found, std::vector<Station>& stations) {
+  const auto pairs = spectral::match_modes({{lost.guide.lambda, lost.guide.both()}}, points_of(found), 0);
+  const auto at = std::find(pairs.before.begin(), pairs.before.end(), 0);
+  if (at == pairs.before.end()) return;
+  ShaftMode m = found[static_cast<std::size_t>(at - pairs.before.begin())];
+  m.id = lost.guide.id;
+  m.put_back = true;
+  stations[lost.station].modes.push_back(std::move(m));
 }
 
 CrossingPoint locate(Crossing c, const std::function<std::vector<ShaftMode>(double)>& modes_at) {
@@ -146,6 +169,7 @@ std::vector<UnstableRange> unstable_ranges(const std::vector<Station>& stations,
         continue;
       }
       r.id = m.id;
+      r.from_start = i == 0;
       r.from = stations[i].speed;
       r.lambda = m.lambda;
       const ShaftMode* before = i > 0 ? mode_with(m.id, stations[i - 1]) : nullptr;
@@ -160,7 +184,10 @@ std::vector<UnstableRange> unstable_ranges(const std::vector<Station>& stations,
       }
     }
   }
-  for (const auto& [id, r] : open) out.push_back(r);
+  for (auto& [id, r] : open) {
+    r.to_end = true;
+    out.push_back(r);
+  }
   std::stable_sort(out.begin(), out.end(), [](const UnstableRange& a, const UnstableRange& b) {
     return std::pair(a.from, a.id) < std::pair(b.from, b.id);
   });

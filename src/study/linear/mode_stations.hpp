@@ -41,8 +41,21 @@ struct Crossing {
   double s0 = 0, s1 = 0, f0 = 0, f1 = 0;
   ShaftMode guide{};        ///< the mode at s1
   std::size_t station = 0;  ///< at s1
+  bool outside = false;     ///< where the mode does not grow it is not among those asked for
 };
 [[nodiscard]] std::vector<Crossing> crossings_of(const std::vector<Station>& stations);
+
+/// A mode that grows at one station and is not listed at the next or the one before: where it does not grow it may lie
+/// outside what was asked for.
+struct LostMode {
+  ShaftMode guide{};
+  std::size_t station = 0;  ///< where it is not listed
+};
+/// Those of `stations` that `grows` for sure at their speeds.
+[[nodiscard]] std::vector<LostMode> lost_modes(const std::vector<Station>& stations,
+                                               const std::function<bool(const ShaftMode&, double)>& grows);
+/// Puts the mode among `found`, all of that station, which is like the lost one there, behind those that are listed.
+void put_back(const LostMode& lost, const std::vector<ShaftMode>& found, std::vector<Station>& stations);
 
 /// Where the crossing is, and the eigenvalue there.
 struct CrossingPoint {
@@ -56,9 +69,10 @@ struct CrossingPoint {
 /// Speeds over which one mode grows.
 struct UnstableRange {
   int id = 0;
-  double from = 0, to = 0;            ///< [rad/s]
-  bool begins = false, ends = false;  ///< at a crossing; else where the mode is first or last seen
-  std::complex<double> lambda = 0;    ///< at the crossing, else where it grows fastest
+  double from = 0, to = 0;                  ///< [rad/s]
+  bool begins = false, ends = false;        ///< at a crossing; else where the mode is first or last seen
+  bool from_start = false, to_end = false;  ///< that is at the first, at the last speed of all
+  std::complex<double> lambda = 0;          ///< at the crossing, else where it grows fastest
   std::optional<std::size_t> begin_crossing{}, end_crossing{};  ///< their places; none where it is undamped beside it
   ShaftMode fastest{};                                          ///< where it grows fastest of all stations
   double fastest_at = 0;                                        ///< [rad/s]

@@ -75,8 +75,63 @@ void ModeValues::put_speed(io::StudySummary& summary, const Station& station) co
         fmt::format("at {} {} the machine is unstable: {}", number_text(station.speed, unit_), unit_, joined(growing)));
 }
 
-void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<UnstableRange>& all,
-                            const std::vector<double>& errors) const {
+// The modes that grow for sure, counted over the speed as a branch counts its eigenvalues.
+void ModeValues::put_stability(io::StudySummary& summary, const std::vector<Station>& stations,
+                               const std::vector<UnstableRange>& sure, const std::vector<double>& errors) const {
+  struct Limit {
+    double speed;
+    bool begins;
+    std::optional<std::size_t> crossing;
+  };
+  std::vector<Limit> events;
+  for (const UnstableRange& r : sure) {
+    if (r.begins) events.push_back({r.from, true, r.begin_crossing});
+    if (r.ends) events.push_back({r.to, false, r.end_crossing});
+  }
+  std::ranges::stable_sort(events, {}, &Limit::speed);
+  BranchVerdict verdict;
+  std::vector<BranchChange> changes;
+  auto next = events.begin();
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const Station& s = stations[i];
+    int count = 0;
+    bool undamped = false, doubtful = false;
+    for (std::size_t k = 0; k < s.listed; ++k) {
+      const ShaftMode& m = s.modes[k];
+      const bool counts = m.grows() && std::ranges::any_of(sure, [&](const UnstableRange& r) {
+                            return r.id == m.id && r.from <= s.speed && s.speed <= r.to;
+                          });
+      count += counts;
+      undamped |= m.undamped;
+      doubtful |= m.grows() && !counts;
+    }
+    verdict.add(deck::from_si(s.speed, unit_),
+                count > 0  ? StabilityClass::unstable
+                : undamped ? StabilityClass::undamped
+                           : StabilityClass::stable,
+                count);
+    if (doubtful) verdict.doubt(static_cast<int>(i));
+    // An undamped mode begins to grow at its station, and ceases to at the next.
+    for (; i + 1 < stations.size() && next != events.end(); ++next) {
+      const double end = stations[i + 1].speed;
+      if (next->begins ? next->speed >= end : next->speed > end) break;
+      changes.push_back({static_cast<int>(i), deck::from_si(next->speed, unit_), count, count + (next->begins ? 1 : -1),
+                         1, false, static_cast<int>(next - events.begin())});
+      count = changes.back().behind;
+    }
+  }
+  for (const BranchChange& c : changes) verdict.add(c);
+  summary.ranges = verdict.ranges(unit_);
+  if (const int at = threshold_among(verdict.limits()); at >= 0) {
+    const BranchChange& c = changes[static_cast<std::size_t>(at)];
+    const auto& crossing = events[static_cast<std::size_t>(c.bifurcation)].crossing;
+    summary.set("threshold", c.parameter, unit_,
+                crossing ? bars_.as_bar(deck::from_si(errors[*crossing], unit_)) : std::map<std::string, double>{});
+  }
+}
+
+void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<Station>& stations,
+                            const std::vector<UnstableRange>& all, const std::vector<double>& errors) const {
   std::vector<double> from, to, frequency, real;
   std::vector<std::int64_t> mode, begins, ends;
   std::vector<std::string> whirl, words;
@@ -96,9 +151,15 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
     begins.push_back(r.begins);
     ends.push_back(r.ends);
     whirl.emplace_back(spectral::vibrates(r.lambda) ? spectral::name_of(tables_.sense_of(r.fastest)) : "none");
-    words.push_back(fmt::format("{}{} to {}{} {}: {}", r.begins ? "" : "from the start, ", number_text(r.from, unit_),
-                                number_text(r.to, unit_), r.ends ? "" : " (the end)", unit_,
-                                words_of(r.fastest, r.lambda)));
+    words.push_back(fmt::format("{}{} to {}{} {}: {}",
+                                r.begins       ? ""
+                                : r.from_start ? "from the start, "
+                                               : "first seen growing at ",
+                                number_text(r.from, unit_), number_text(r.to, unit_),
+                                r.ends     ? ""
+                                : r.to_end ? " (the end)"
+                                           : " (last seen growing there)",
+                                unit_, words_of(r.fastest, r.lambda)));
     if (++shown > most_named) continue;
     const std::string head = fmt::format("unstable.{}.", shown);
     summary.set(head + "from", deck::from_si(r.from, unit_), unit_, error_of(r.begin_crossing));
@@ -107,9 +168,7 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
     summary.set(head + "frequency", r.lambda.imag(), "rad/s");
   }
   summary.set("unstable.count", static_cast<double>(ranges.size()), "1");
-  // By rising speed: what begins first begins where the machine is stable below, unless it is there from the start.
-  if (!ranges.empty() && ranges.front().begins)
-    summary.set("threshold", deck::from_si(ranges.front().from, unit_), unit_, error_of(ranges.front().begin_crossing));
+  put_stability(summary, stations, ranges, errors);
   auto& table = group.child("unstable");
   table.put("from", from, "rad/s", "speed from which the mode grows");
   table.put("to", to, "rad/s", "speed up to which it grows");

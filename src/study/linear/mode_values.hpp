@@ -30,14 +30,16 @@ public:
   /// grow for sure (`unstable`). A warning names these.
   void put_speed(io::StudySummary& summary, const Station& station) const;
   /// Of a range: "unstable.K." with from, to, mode and frequency, and a table; `errors` of the speeds of the crossings
-  /// [rad/s]. "threshold": the lowest speed at which the machine, stable below, becomes unstable. A warning names the
-  /// ranges. Modes that nowhere grow for sure are left out.
-  void put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<UnstableRange>& ranges,
-                  const std::vector<double>& errors) const;
+  /// [rad/s]. Ranges of stability and "threshold" are those of a branch over these speeds. A warning names the ranges.
+  /// Modes that nowhere grow for sure are left out.
+  void put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<Station>& stations,
+                  const std::vector<UnstableRange>& ranges, const std::vector<double>& errors) const;
   /// Motions that fall away before they vibrate: a table, and how many there are at the last speed.
   void put_overdamped(io::Group& table, io::StudySummary& summary, const std::vector<Station>& stations) const;
 
 private:
+  void put_stability(io::StudySummary& summary, const std::vector<Station>& stations,
+                     const std::vector<UnstableRange>& sure, const std::vector<double>& errors) const;
   [[nodiscard]] std::string words_of(const ShaftMode& mode, std::complex<double> lambda) const;
 
   std::string unit_;

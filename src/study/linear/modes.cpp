@@ -33,7 +33,7 @@ namespace whirl::study {
 namespace {
 
 // Modes above those asked for: some come down between two speeds, and a coarse mesh may have one in another place.
-constexpr int beyond_over_speeds = 8, beyond_over_meshes = 2;
+constexpr int beyond_over_speeds = 8, beyond_over_meshes = 2, beyond_to_find = 60;
 
 // Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
 StudyResult rigid_modes(Context& context, const ModesOptions& options) {
@@ -193,14 +193,34 @@ StudyResult Modes::run(Context& context) {
       reduction.put(summary, speed, k);
     }
   }
+  // Modes of a frequency that may be above those asked for.
+  const auto modes_about = [&](const ShaftMode& mode, double speed, ModeSearch& search) {
+    return shaft_modes(system, walker.at(speed), options.count, beyond_to_find, 1.5 * mode.lambda.imag(), search);
+  };
   // Damped frequency meets the speed of the shaft between two speeds, or a mode begins or ceases to grow.
   std::vector<Crossing> crossings;
-  if (options.range) crossings = crossings_of(stations);
+  if (options.range) {
+    // A mode that begins or ceases to grow outside the list is looked up where it does not grow.
+    const std::vector<LostMode> lost =
+        lost_modes(stations, [&](const ShaftMode& m, double speed) { return surely_grows(m, speed, bars); });
+    const auto look_up = [&](std::size_t i) {
+      ModeSearch search;
+      auto all_there = modes_about(lost[i].guide, stations[lost[i].station].speed, search);
+      return pack(std::move(all_there), search);
+    };
+    const auto found = distribute(layout, lost.size(), look_up, pieces, "onset", walker.trail());
+    for (std::size_t i = 0; i < lost.size(); ++i) {
+      ModeSearch search;
+      put_back(lost[i], unpack(found[i], search), stations);
+    }
+    crossings = crossings_of(stations);
+  }
   const auto refine = [&](std::size_t i) {
     std::vector<int> missed_on_the_way;
     const CrossingPoint at = locate(crossings[i], [&](double speed) {
       ModeSearch search;
-      auto there = shaft_modes(system, walker.at(speed), options.count, more, limit, search);
+      auto there = crossings[i].outside ? modes_about(crossings[i].guide, speed, search)
+                                        : shaft_modes(system, walker.at(speed), options.count, more, limit, search);
       missed_on_the_way.push_back(static_cast<int>(search.missed));
       return there;
     });
@@ -282,7 +302,7 @@ StudyResult Modes::run(Context& context) {
   tables.put_shapes(group.child("shapes"), shape_speeds, shaped);
   const ModeValues values(unit, tables, bars);
   if (options.range)
-    values.put_ranges(group, summary, unstable_ranges(stations, crossings, points), errors);
+    values.put_ranges(group, summary, stations, unstable_ranges(stations, crossings, points), errors);
   else
     for (const double speed : speeds) values.put_speed(summary, station_at(speed));
   values.put_overdamped(group.child("overdamped"), summary, stations);

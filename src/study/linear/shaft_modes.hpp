@@ -17,8 +17,9 @@ struct ShaftMode {
   double participation = 1;  // of the machine: its largest motion over that of any state
   double condition = 0;      // of the eigenvalue, as of spectral::Mode; not a number: not known or not asked for
   int multiplicity = 1, vectors = 1;
-  bool extra = false;  // it is listed for nothing but its growth, above those asked for
-  int id = -1;         // the same for the same mode at other speeds
+  bool extra = false;     // it is listed for nothing but its growth, above those asked for
+  int id = -1;            // the same for the same mode at other speeds
+  bool put_back = false;  // it is none of those asked for, but grows at a speed beside this one
 
   [[nodiscard]] bool grows() const { return !undamped && lambda.real() > 0; }
   [[nodiscard]] std::vector<std::complex<double>> both() const {
