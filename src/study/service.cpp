@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -22,6 +24,14 @@ using io::StudySummary;
 
 constexpr double same = 1e-6;                      // of the speed: two speeds are one
 constexpr double damped = std::numbers::pi / 2.5;  // log decrement of an amplification factor of 2.5 (API 684)
+
+// By rising doubt whether the machine can run; what grows for sure is beyond doubt.
+constexpr std::array words{"stable", "undamped", "undetermined", "unstable"};
+constexpr std::size_t stable = 0, undetermined = 2, unstable = 3;
+std::size_t rank_of(const std::string& word) {
+  const auto at = std::find(words.begin(), words.end(), word == "diverges" ? "unstable" : word);
+  return at == words.end() ? undetermined : static_cast<std::size_t>(at - words.begin());
+}
 
 double bar_of(const Quantity& q) {
   const auto at = q.more.find("uncertainty");
@@ -132,65 +142,127 @@ private:
     vote(count > 0 ? "unstable" : count == 0 ? "stable" : "undetermined", study);
   }
 
-  // The stretch of a branch over the speed in which the machine runs, and its distance from the threshold [rad/s].
+  // A speed at which a machine becomes stable or ceases to be, with its bar [rad/s].
+  struct Limit {
+    double at, error;
+    bool stable_below;
+  };
+
+  // The bar of what was located at a speed.
+  static double error_at(const StudySummary& s, double speed) {
+    double error = 0;
+    const auto take = [&](double value, const std::string& unit, double bar) {
+      if (std::abs(deck::number_to_si(value, unit) - speed) <= same * speed && std::isfinite(bar))
+        error = std::max(error, deck::number_to_si(bar, unit));
+    };
+    for (const io::Bifurcation& b : s.bifurcations) take(b.value, b.unit, b.uncertainty);
+    for (const auto& [name, q] : s.values)
+      if (name == "threshold" || between(name, "unstable.", ".from") || between(name, "unstable.", ".to"))
+        take(q.value, q.unit, bar_of(q));
+    return error;
+  }
+
+  static std::vector<Limit> limits_of(const StudySummary& s) {
+    std::vector<Limit> out;
+    for (std::size_t k = 1; k < s.ranges.size(); ++k) {
+      const io::StabilityRange &a = s.ranges[k - 1], &b = s.ranges[k];
+      const bool grows_before = a.stability == "unstable", grows_behind = b.stability == "unstable";
+      // Between stretches with a gap nothing was located.
+      if (grows_before == grows_behind || std::abs(a.to - b.from) > same * std::abs(a.to)) continue;
+      const double at = deck::number_to_si(a.to, a.unit);
+      out.push_back({at, error_at(s, at), grows_before ? b.to < b.from : a.from < a.to});
+    }
+    return out;
+  }
+
+  // The stretches over the speed in which the machine runs: their word, and its distance from the nearest limit of
+  // stability, positive on the stable side. Empty: the study does not reach the speed.
+  std::string take_ranges(const StudySummary& s) {
+    std::string verdict;
+    bool within = false, below = false, above = false;
+    for (const io::StabilityRange& r : s.ranges) {
+      const double here = deck::from_si(speed_, r.unit), low = std::min(r.from, r.to), high = std::max(r.from, r.to);
+      below |= low <= here * (1 + same);
+      above |= high >= here * (1 - same);
+      if (low > here * (1 + same) || here > high * (1 + same)) continue;
+      verdict = !within || verdict == r.stability ? r.stability : "undetermined";
+      within = true;
+    }
+    if (!within && below && above) verdict = "undetermined";  // in a gap
+    const Limit* nearest = nullptr;
+    const std::vector<Limit> limits = limits_of(s);
+    for (const Limit& l : limits) {
+      if (!verdict.empty() && std::abs(l.at - speed_) <= l.error) verdict = "undetermined";
+      if (!nearest || std::abs(l.at - speed_) < std::abs(nearest->at - speed_)) nearest = &l;
+    }
+    if (nearest) {
+      const double margin = (nearest->stable_below ? 1 : -1) * (nearest->at - speed_) / speed_;
+      keep(threshold_,
+           {"margin in speed to the threshold of stability",
+            {},
+            {100 * margin, "%", bar(100 * nearest->error / speed_)},
+            nearest->stable_below ? "" : "the machine is unstable below it",
+            s.name},
+           false);
+    }
+    return verdict;
+  }
+
   void take_branch(const StudySummary& s) {
     const io::Group* group = group_of(s);
     if (!group || !group->has_attribute("parameter") || group->text("parameter") != "speed") return;
-    const Quantity* threshold = find(s, "threshold");
-    bool near = false;
-    if (threshold && threshold->unit == "rad/s") {
-      const double margin = (threshold->value - speed_) / speed_, error = bar_of(*threshold) / speed_;
-      near = std::abs(margin) <= error;
-      keep(threshold_,
-           {"margin in speed to the threshold of stability", {}, {100 * margin, "%", bar(100 * error)}, {}, s.name},
-           false);
-    }
-    std::string verdict;
-    for (const io::StabilityRange& r : s.ranges) {
-      const double here = deck::from_si(speed_, r.unit);
-      if (std::min(r.from, r.to) > here * (1 + same) || here > std::max(r.from, r.to) * (1 + same)) continue;
-      verdict = verdict.empty() || verdict == r.stability ? r.stability : "undetermined";
-    }
-    vote(near ? "undetermined" : verdict, s.name);
+    vote(take_ranges(s), s.name);
   }
 
-  // The least log decrement: at the speed, or in a straight line between the computed speeds beside it.
-  void take_modes(const StudySummary& s) {
-    struct Least {
-      double speed, decrement, error;
-    };
-    std::vector<Least> least;  // by speed
-    bool grows = false;
+  // What the modes at one computed speed say together: the worst word, and the least decrement.
+  struct ModesAt {
+    double speed = 0;
+    std::size_t worst = stable;  // among `words`
+    double decrement = io::no_value, error = io::no_value;
+  };
+  static std::vector<ModesAt> modes_by_speed(const StudySummary& s) {
+    std::map<double, ModesAt> by;
     for (const io::ModeEntry& m : s.modes) {
-      if (m.imag == 0 && m.stability != "diverges") continue;
-      const double at = deck::number_to_si(m.speed, m.speed_unit);
+      const double speed = deck::number_to_si(m.speed, m.speed_unit);
+      ModesAt& at = by[speed];
+      at.speed = speed;
+      at.worst = std::max(at.worst, rank_of(m.stability));
+      if (m.imag == 0 || !std::isfinite(m.log_decrement) || at.decrement <= m.log_decrement) continue;
       const auto error = m.more.find("log_decrement_uncertainty");
-      const Least here{at, m.log_decrement, error == m.more.end() ? io::no_value : error->second};
-      if (is_service(at)) grows |= m.stability == "diverges";
-      if (!std::isfinite(m.log_decrement)) continue;
-      const auto known = std::find_if(least.begin(), least.end(), [&](const Least& l) { return l.speed == at; });
-      if (known == least.end())
-        least.push_back(here);
-      else if (here.decrement < known->decrement)
-        *known = here;
+      at.decrement = m.log_decrement;
+      at.error = error == m.more.end() ? io::no_value : error->second;
     }
-    std::sort(least.begin(), least.end(), [](const Least& a, const Least& b) { return a.speed < b.speed; });
-    for (std::size_t k = 0; k < least.size(); ++k) {
-      const Least &b = least[k], &a = k > 0 ? least[k - 1] : b;
+    std::vector<ModesAt> out;
+    for (const auto& [speed, at] : by) out.push_back(at);
+    return out;
+  }
+
+  // At the speed, or between the computed speeds beside it: there the limits of stability that were located decide, and
+  // the least log decrement is taken in a straight line.
+  void take_modes(const StudySummary& s) {
+    const std::vector<ModesAt> all = modes_by_speed(s);
+    std::string verdict = take_ranges(s);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const ModesAt &b = all[k], &a = k > 0 ? all[k - 1] : b;
       const bool here = is_service(b.speed);
       if (!here && !(a.speed < speed_ && speed_ < b.speed)) continue;
-      const double w = here ? 1 : (speed_ - a.speed) / (b.speed - a.speed),
-                   decrement = (1 - w) * a.decrement + w * b.decrement;
+      const double w = here ? 1 : (speed_ - a.speed) / (b.speed - a.speed);
+      const double decrement = here ? b.decrement : (1 - w) * a.decrement + w * b.decrement;
       const double error = here ? b.error : std::max(a.error, b.error);
-      const std::string mark = here ? "" : between_words({decrement, a.speed, b.speed}, s.modes.front().speed_unit);
-      keep(decrement_, {"smallest log decrement", {}, {decrement, "1", bar(error)}, mark, s.name}, false);
-      const bool sure = here || (a.decrement > 0) == (b.decrement > 0);
-      vote(!sure || std::abs(decrement) <= (std::isfinite(error) ? error : 0) ? "undetermined"
-           : decrement > 0 && !grows                                          ? "stable"
-                                                                              : "unstable",
-           s.name);
+      if (here)
+        verdict = verdict == words[undetermined] ? verdict : words[b.worst];
+      else if (verdict.empty())
+        verdict = words[a.worst == b.worst ? a.worst : undetermined];
+      else if (verdict != words[unstable] && std::max(a.worst, b.worst) == undetermined)
+        verdict = words[undetermined];
+      if (verdict == words[stable] && decrement <= (std::isfinite(error) ? error : 0)) verdict = words[undetermined];
+      if (std::isfinite(decrement)) {
+        const std::string mark = here ? "" : between_words({decrement, a.speed, b.speed}, s.modes.front().speed_unit);
+        keep(decrement_, {"smallest log decrement", {}, {decrement, "1", bar(error)}, mark, s.name}, false);
+      }
       break;
     }
+    vote(verdict, s.name);
     for (const auto& [name, q] : s.values)
       if (const auto k = between(name, "critical.", ".speed"); k && std::isfinite(q.value)) {
         const Quantity* delta = find(s, "critical." + *k + ".log_decrement");
@@ -234,7 +306,7 @@ private:
   void take_static(const StudySummary& s) {
     const io::Group* group = group_of(s);
     if (!group || !group->has_attribute("speed") || !is_service(group->real("speed"))) return;
-    if (group->has_attribute("unstable_count")) vote_of(group->integer("unstable_count"), s.name);
+    if (group->has_attribute("stability")) vote(group->text("stability"), s.name);
     for (const auto& [name, q] : s.values) {
       if (!std::isfinite(q.value)) continue;
       if (const auto b = between(name, "bearing.", ".min_thickness")) {
@@ -306,19 +378,22 @@ private:
     }
   }
 
-  // Temperature and pressure of one film with heat: with bars at the last speed of the study.
+  // Temperature of one film with heat: with a bar at the last speed of the study that has a film.
   void take_thd(const StudySummary& s) {
     const io::Group* group = group_of(s);
     if (!group || !group->has_group("budget") || !group->has_attribute("bearing")) return;
     const io::Group& table = group->group("budget");
     const std::vector<double>& speeds = table.reals("parameter");
     const std::string& bearing = group->text("bearing");
-    if (!speeds.empty() && is_service(speeds.back())) {
+    const std::vector<double>& hottest = table.reals("maximum_temperature");
+    // Values are those at the last speed with a film.
+    const auto last = std::find_if(hottest.rbegin(), hottest.rend(), [](double t) { return std::isfinite(t); });
+    if (last != hottest.rend() && is_service(speeds[static_cast<std::size_t>(hottest.rend() - last) - 1])) {
       if (const Quantity* q = find(s, "temperature.maximum"))
         return keep_film(temperature_, "highest film temperature", bearing, *q, "", s);
     }
     const auto at = at_speed(
-        speeds, [&](std::size_t k) { return table.reals("maximum_temperature")[k]; }, speed_, 0);
+        speeds, [&](std::size_t k) { return hottest[k]; }, speed_, 0);
     if (at)
       keep_film(temperature_, "highest film temperature", bearing, {at->value, "K"},
                 joined(between_words(*at, "rad/s"), "without a bar"), s);
@@ -332,10 +407,15 @@ private:
   void put_stability() {
     ServiceFact fact{"stability", {}, {}, "not known: `modes` or `equilibrium_branch` over the speed give it", {}};
     if (!verdicts_.empty()) {
-      const bool agree =
-          std::all_of(verdicts_.begin(), verdicts_.end(), [&](const auto& v) { return v == verdicts_[0]; });
-      const bool grows = std::find(verdicts_.begin(), verdicts_.end(), "unstable") != verdicts_.end();
-      fact.mark = agree ? verdicts_[0] : grows ? "undetermined: the studies differ" : "undetermined";
+      const auto said = [&](const std::string& word) {
+        return std::find(verdicts_.begin(), verdicts_.end(), word) != verdicts_.end();
+      };
+      const bool grows = said("unstable"), decays = said("stable") || said("undamped");
+      // A count of what grows does not tell undamped from stable.
+      fact.mark = grows && decays
+                      ? "undetermined: the studies differ"
+                      : *std::max_element(verdicts_.begin(), verdicts_.end(),
+                                          [](const auto& a, const auto& b) { return rank_of(a) < rank_of(b); });
       fact.study = fmt::format("{}", fmt::join(voters_, ", "));
     }
     service_.facts.push_back(std::move(fact));

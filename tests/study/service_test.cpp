@@ -153,7 +153,7 @@ TEST(Service, TakesFilmsPressuresAndGrowthOfAStatic) {
   }
   io::Group root;
   root.child("static").set("speed", 3000 * rpm);
-  root.child("static").set("unstable_count", 2);
+  root.child("static").set("stability", "unstable");
   const auto here = service_of({3000 * rpm, "rpm"}, std::vector{s}, root);
   EXPECT_EQ(fact(here, "stability")->mark, "unstable");
   EXPECT_EQ(fact(here, "thinnest film")->place, "B");
@@ -192,6 +192,83 @@ TEST(Service, TakesCyclesAndResponses) {
   response.set("operating.node.4.semi_major", 35e-6, "m");
   const auto larger = service_of({3600 * rpm, "rpm"}, std::vector{cycles, response}, root);
   EXPECT_EQ(fact(larger, "largest vibration")->place, "node 4");
+}
+
+// Modes at 1000, 1100, ... rpm, one of each word, with a decrement where they vibrate.
+io::StudySummary modes_with(const std::vector<std::string>& words) {
+  io::StudySummary s;
+  s.name = s.kind = "modes";
+  for (std::size_t k = 0; k < words.size(); ++k)
+    for (const bool other : {false, true}) {
+      io::ModeEntry m;
+      m.speed = 1000 + 100 * static_cast<double>(k);
+      m.speed_unit = "rpm";
+      m.stability = other ? "stable" : words[k];
+      m.imag = m.stability == "diverges" ? 0 : 100;
+      if (m.imag > 0) m.log_decrement = m.stability == "undamped" ? 0 : m.stability == "unstable" ? -0.1 : 0.2;
+      s.modes.push_back(m);
+    }
+  return s;
+}
+
+std::string verdict_at(double speed, const std::vector<io::StudySummary>& studies) {
+  return fact(at(speed, studies), "stability")->mark;
+}
+
+TEST(Service, TheVerdictOfModesIsThatOfTheirWords) {
+  EXPECT_EQ(verdict_at(1050, {modes_with({"diverges", "diverges"})}), "unstable");
+  EXPECT_EQ(verdict_at(1050, {modes_with({"stable", "diverges"})}), "undetermined");
+  EXPECT_EQ(verdict_at(1050, {modes_with({"stable", "undetermined"})}), "undetermined");
+  EXPECT_EQ(verdict_at(1100, {modes_with({"unstable", "stable"})}), "stable");
+  EXPECT_EQ(verdict_at(1100, {modes_with({"stable", "undetermined"})}), "undetermined");
+  EXPECT_EQ(verdict_at(1100, {modes_with({"stable", "undamped"})}), "undamped");
+  EXPECT_NE(verdict_at(1200, {modes_with({"stable", "stable"})}).find("not known"), std::string::npos);
+  // Nothing that vibrates has a decrement.
+  io::StudySummary both = modes_with({"diverges"});
+  both.modes.pop_back();
+  EXPECT_EQ(verdict_at(1000, {both}), "unstable");
+  // A decrement within its bar.
+  io::StudySummary little = modes_with({"stable"});
+  for (io::ModeEntry& m : little.modes) m.more["log_decrement_uncertainty"] = 0.3;
+  EXPECT_EQ(verdict_at(1000, {little}), "undetermined");
+}
+
+TEST(Service, LimitsOfModesDecideBetweenTheirSpeeds) {
+  io::StudySummary s = modes_with({"stable", "unstable", "stable"});
+  s.ranges = {{1000, 1080, "rpm", "stable"}, {1080, 1150, "rpm", "unstable"}, {1150, 1200, "rpm", "stable"}};
+  s.set("threshold", 1080, "rpm", {{"uncertainty", 2}});
+  s.set("unstable.1.to", 1150, "rpm", {{"uncertainty", 4}});
+  EXPECT_EQ(verdict_at(1050, {s}), "stable");
+  EXPECT_EQ(verdict_at(1081, {s}), "undetermined");
+  EXPECT_EQ(verdict_at(1120, {s}), "unstable");
+  EXPECT_EQ(verdict_at(1153, {s}), "undetermined");
+  EXPECT_EQ(verdict_at(1160, {s}), "stable");
+  const auto margin = [&](double speed) {
+    return fact(at(speed, {s}), "margin in speed to the threshold of stability")->value;
+  };
+  EXPECT_NEAR(margin(1050).value, 100 * 30.0 / 1050, 1e-9);
+  EXPECT_NEAR(margin(1050).more.at("uncertainty"), 100 * 2.0 / 1050, 1e-9);
+  EXPECT_NEAR(margin(1120).value, -100 * 30.0 / 1120, 1e-9);
+  EXPECT_NEAR(margin(1160).value, 100 * 10.0 / 1160, 1e-9);
+}
+
+// Whirl of a branch ends at 4470 +- 50 rpm; the branch may run downwards.
+TEST(Service, EveryLimitOfABranchHasItsBar) {
+  io::StudySummary up = branch(1500, 1), down = up;
+  up.ranges = {{500, 1500, "rpm", "stable"}, {1500, 4470, "rpm", "unstable"}, {4470, 8000, "rpm", "stable"}};
+  down.ranges = {{8000, 4470, "rpm", "stable"}, {4470, 1500, "rpm", "unstable"}, {1500, 500, "rpm", "stable"}};
+  io::Bifurcation ends;
+  ends.value = 4470;
+  ends.unit = "rpm";
+  ends.uncertainty = 50;
+  for (io::StudySummary* s : {&up, &down}) {
+    s->bifurcations = {ends};
+    EXPECT_EQ(verdict_at(4480, {*s}), "undetermined");
+    EXPECT_EQ(verdict_at(4600, {*s}), "stable");
+    EXPECT_EQ(verdict_at(3000, {*s}), "unstable");
+    EXPECT_NEAR(fact(at(4600, {*s}), "margin in speed to the threshold of stability")->value.value, 100 * 130.0 / 4600,
+                1e-9);
+  }
 }
 
 TEST(Service, StudiesThatDifferDecideNothing) {
