@@ -3,6 +3,7 @@
 
 cases_modes.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
+import json
 import math
 import sys
 
@@ -31,6 +32,9 @@ def divergence(h):
         h.close("modes that grow", value(s["m"], "at.100.unstable"), 1, 0)
         h.true("the other plane is stable", [m["stability"] for m in s["m"]["modes"]] == ["diverges", "stable"])
     symmetric(h)
+    s = h.run(deck, "as it is", launcher=[])
+    h.true("the branch is unstable, and the motion does not rest", s["b"]["stability"] == "unstable throughout" and "motion.unsettled" in s["mo"]["values"],
+           f"{s['b']['stability']} {list(s['mo']['values'])}")
     # The same spring in the middle of a shaft, whole and reduced; another film speaks for seals.
     shaft = h.source / "tests/cases/friswell_591.yaml"
     seal = "bearings.seal={node: 4, film: {type: linear, stiffness: [-8e6 N/m, 0 N/m, 0 N/m, 1e5 N/m], damping: 500 N s/m}}"
@@ -77,7 +81,8 @@ def missing(h):
         h.true("and stand in a table", np.all(-real / np.hypot(real, imag) > 0.9))
     # Internal damping: forward whirl grows beyond 1466.98 rad/s, as the branch of equilibria says.
     deck = h.source / "tests/cases/missing_unstable.yaml"
-    more = ["studies=[{modes: {name: m, speeds: [3000 rad/s], count: 6}}, {modes: {name: over, range: {from: 500 rad/s, to: 3000 rad/s}, points: 6, count: 4}}]"]
+    more = ["studies=[{modes: {name: m, speeds: [3000 rad/s], count: 6}}, {modes: {name: over, range: {from: 500 rad/s, to: 3000 rad/s}, points: 6, count: 4}}, "
+            "{modes: {name: beyond, range: {from: 500 rad/s, to: 4500 rad/s}, points: 9, count: 4, max_frequency: 1000 rad/s}}]", "service_speed=1300 rad/s"]
     s = h.run(deck, "internal", more, launcher=[])
     growing = [m for m in s["m"]["modes"] if m["stability"] == "unstable"]
     h.true("one mode grows", len(growing) == 1 and growing[0]["whirl"] == "forward")
@@ -85,6 +90,11 @@ def missing(h):
     h.close("    log decrement", growing[0]["log_decrement"], -0.009, 0.0005)
     h.close("    the least damped", value(s["m"], "at.3000.least_damped.log_decrement"), growing[0]["log_decrement"], 0)
     h.close("    threshold over the speed [rad/s]", value(s["over"], "threshold"), 1466.98, 0.01)
+    h.close("    of a mode outside the list [rad/s]", value(s["beyond"], "threshold"), 1466.98, 0.01)
+    h.true("    which is in the words", warned(s["beyond"], "unstable: 1466.9") and not warned(s["beyond"], "from the start"), str(s["beyond"]["warnings"]))
+    service = {f["what"]: f for f in json.loads((h.work / "internal" / "summary.json").read_text())["service_speed"]["facts"]}
+    h.true("    stable between speeds of different fate", service["stability"]["mark"] == "stable", str(service["stability"]))
+    h.close("    the margin of the service speed [%]", service["margin in speed to the threshold of stability"]["value"], 100 * (1466.98 / 1300 - 1), 0.001)
     h.close("    up to the end", value(s["over"], "unstable.1.to"), 3000, 1e-9)
     h.close("    its number", value(s["over"], "unstable.1.mode"), next(m["mode"] for m in s["over"]["modes"] if m["stability"] == "unstable"), 0)
     h.true("    both warn", warned(s["m"], "unstable", "forward") and warned(s["over"], "unstable", "forward", "to 3000"))
@@ -107,6 +117,43 @@ def fine(h):
         h.true("    one grows", sum(m["stability"] == "unstable" for m in s["modes"]) == 1)
 
 
+def ocvirk(load, speed, viscosity, diameter, length, clearance):
+    """Eccentricity and stiffness of a short bearing (Friswell et al., 5.5.1): an octic in the eccentricity, closed forms of the coefficients."""
+    s = diameter * speed * viscosity * length**3 / (8 * load * clearance**2)
+    octic = lambda x: x**4 - 4 * x**3 + (6 - s * s * (16 - math.pi**2)) * x * x - (4 + math.pi**2 * s * s) * x + 1  # noqa: E731
+    low, high = 0.0, 1.0  # of the eccentricity squared
+    for _ in range(100):
+        low, high = ((low + high) / 2, high) if octic((low + high) / 2) > 0 else (low, (low + high) / 2)
+    e2, e, p2 = low, math.sqrt(low), math.pi**2
+    q, h0 = math.sqrt(1 - e2), 1 / (p2 * (1 - e2) + 16 * e2)**1.5
+    return e, {"xx": load / clearance * h0 * 4 * (p2 * (2 - e2) + 16 * e2),
+               "xy": load / clearance * h0 * math.pi * (p2 * (1 - e2)**2 - 16 * e2**2) / (e * q),
+               "yx": -load / clearance * h0 * math.pi * (p2 * (1 - e2) * (1 + 2 * e2) + 32 * e2 * (1 + e2)) / (e * q),
+               "yy": load / clearance * h0 * 4 * (p2 * (1 + 2 * e2) + 32 * e2 * (1 + e2) / (1 - e2))}
+
+
+def limits(h):
+    """Unstable up to 205, stable to 694.87 rad/s: modes and branches say the same, and so does the response that looks at speeds beyond tables."""
+    deck = h.source / "tests/cases/two_ranges.yaml"
+    s = h.run(deck, "given", launcher=[])
+    m, b, down, r = (s[k] for k in ("m", "b", "down", "r"))
+    for name, study in (("modes", m), ("branch", b), ("downwards", down)):
+        h.close(f"threshold, {name} [rad/s]", value(study, "threshold"), 694.87, 0.01)
+    for a, wanted in zip(m["ranges"], b["ranges"], strict=True):
+        h.true("the ranges of modes are those of the branch", a["stability"] == wanted["stability"] and abs(a["from"] - wanted["from"]) < 0.01 and
+               abs(a["to"] - wanted["to"]) < 0.01, f"{a} {wanted}")
+    h.true("the response does not reach the service speed, and the rest stands", r["status"] == "completed" and r["points"] >= 60 and
+           warned(r, "service_speed of 1200 rad/s") and warned(r, "(service_speed among them)"), f"{r['status']} {r.get('warnings')}")
+    # A window between the speeds that are counted in any case, about the service speed.
+    rows = ", ".join("{speed: %g rad/s, k_xy: %g N/m, k_yx: %g N/m}" % (v, k, -k) for v, k in ((0, 0), (520, 0), (522, 1e5), (532, 1e5), (534, 0), (2000, 0)))
+    window = ["service_speed=528 rad/s", f"elements.seal.table=[{rows}]",
+              "studies=[{unbalance_response: {name: r, unbalance: [u], range: {from: 100 rad/s, to: 1300 rad/s}, points: 601}}, {static: {name: s, speed: 5042 rpm}}]"]
+    s = h.run(deck, "window", window, launcher=[])
+    h.close("eigenvalues that grow in the window", value(s["r"], "operating_speed.unstable_count"), 2, 0)
+    h.true("    the verdict names it", s["r"]["stability"].startswith("unstable from 52"), s["r"]["stability"])
+    h.true("    static in its own unit", warned(s["s"], "at 5042 rpm the equilibrium is unstable"), str(s["s"].get("warnings")))
+
+
 def textbook(h):
     """Printed values of Friswell's machines; an undamped pair at rest is two modes, neither of which grows."""
     s = h.run(h.source / "tests/cases/friswell_591.yaml", "591", launcher=[])["campbell"]
@@ -120,6 +167,15 @@ def textbook(h):
     rest = [m for m in s["modes"] if m["speed"] == 0]
     for m, wanted in zip(rest, (11.66, 14.80, 33.97, 49.19, 97.97, 126.6), strict=True):
         h.close("5.9.4 at rest [Hz]", m["imag"] / (2 * math.pi), wanted, 0.01 if wanted < 100 else 0.1)
+    # 5.9.6, short films: the closed forms of the book from the load that the bearing carries; one threshold from modes and branch.
+    s = h.run(h.source / "tests/cases/friswell_596.yaml", "596", launcher=[])
+    load = value(s["s"], "bearing.a.force.y")
+    eccentricity, stiffness = ocvirk(load, 4000 * RPM, 0.1, 0.1, 0.03, 1e-4)
+    h.close("5.9.6: eccentricity at 4000 rpm", math.hypot(*(value(s["s"], f"bearing.a.eccentricity.{d}") for d in "xy")), eccentricity, 1e-7)
+    for k, wanted in stiffness.items():
+        h.close(f"    K_{k} [N/m]", value(s["s"], f"bearing.a.K.{k}"), wanted, 1e-6 * abs(wanted))
+    branch = s["t"]["bifurcations"][0]
+    h.close("    threshold of modes and branch [rpm]", value(s["campbell"], "threshold"), branch["value"], 0.01)
     # Coupled across with a skew part it is unstable at every speed above rest.
     skew = ["studies=[{modes: {name: m, speeds: [400 rpm, 4000 rpm], count: 6}}]"]
     s = h.run(h.source / "tests/cases/always_unstable.yaml", "skew", skew, launcher=[])["m"]
@@ -171,5 +227,5 @@ def level_1(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {f.__name__: f for f in (divergence, fine, level_1, missing, supports, textbook)}[sys.argv[3]](harness)
+    {f.__name__: f for f in (divergence, fine, level_1, limits, missing, supports, textbook)}[sys.argv[3]](harness)
     harness.finish()
