@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -327,6 +328,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   };
   const system::ShownPlaces shown = machine.places();
   std::vector<Listed> peaks;
+  std::map<std::string, std::string> without_height;  // speed: labels of the places
   for (std::size_t p = 0; p < places.size(); ++p) {
     const ResponseCurve of = curve_at(curve, places[p].of, places[p].at);
     int number = 0;
@@ -342,13 +344,17 @@ StudyResult UnbalanceResponse::run(Context& context) {
       if (const std::string bearing = touched(nearest(curve, peak.speed), shown); !bearing.empty())
         entry.notes.push_back("no answer: the motion leaves bearing " + bearing + " too little film");
       peaks.push_back({entry, {head, p, peak.speed, peak.height, peak.amplification, peak.errors, saddles}});
-      if (!std::isfinite(peak.height))
-        summary.warnings.push_back(
-            fmt::format("{}: the peak near {:.6g} {} has no height: it grows as the speed comes nearer, as an "
-                        "undamped resonance does",
-                        places[p].label, deck::from_si(peak.speed, unit), unit));
+      if (std::isfinite(peak.height)) continue;
+      // Places see one resonance at speeds that differ by the tolerance.
+      std::string& where = without_height[fmt::format("{:.5g}", deck::from_si(peak.speed, unit))];
+      where += (where.empty() ? "" : "; ") + places[p].label;
     }
   }
+  for (const auto& [speed, where] : without_height)
+    summary.warnings.push_back(
+        fmt::format("the peak near {} {} has no height ({}): it grows as the speed comes nearer, as an undamped "
+                    "resonance does",
+                    speed, unit, where));
   // The first node named in the deck is the one the report speaks of; its highest peak comes first.
   std::vector<NamedPeak> named;
   int number = 0;
