@@ -66,6 +66,11 @@ def heat(h):
         h.true(f"{ranks} ranks: the others are there", numpy.isfinite(rows[ranks][[0, 2]]).all() and numpy.isnan(rows[ranks][1]))
         h.close(f"{ranks} ranks: loss at 5000 rad/s [W]", rows[ranks][0], rows[1][0], 1e-6 * rows[1][0])
         h.true(f"{ranks} ranks: values of the last speed", value(found[2]["bearing A"], "power_loss") == rows[ranks][2])
+    # Values, bars and fields are those of the last film that there is.
+    words = "studies.1.thd.speeds=[5000 rad/s, 1e9 rad/s]"
+    h.exits("the last speed is lost", h.whirl("../thd/bearing_a.yaml", "lost", [*THD, words]), 3, "no film at 1e+09 rad/s", "5000 rad/s, the last speed with a film")
+    last = h.studies("lost")["bearing A"]
+    h.close("    its values are kept", value(last, "power_loss"), rows[1][0], 1e-6 * rows[1][0])
     self_acting = [*THD, "studies.1.thd.orifices=[]", "studies.1.thd.bush={type: adiabatic}", "studies.1.thd.journal={type: adiabatic}"]
     for speed in "3e5", "1e6", "1e8":
         h.exits(f"walls without heat at {speed} rad/s", h.whirl("../thd/bearing_a.yaml", speed, [*self_acting, f"studies.1.thd.speeds=[{speed} rad/s]"]), 3)

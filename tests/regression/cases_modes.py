@@ -142,6 +142,7 @@ def limits(h):
     for a, wanted in zip(m["ranges"], b["ranges"], strict=True):
         h.true("the ranges of modes are those of the branch", a["stability"] == wanted["stability"] and abs(a["from"] - wanted["from"]) < 0.01 and
                abs(a["to"] - wanted["to"]) < 0.01, f"{a} {wanted}")
+    h.true("a linear machine does not jump", all("jump" not in x["sentence"] and x["sentence"] for x in b["bifurcations"]), str(b["bifurcations"]))
     h.true("the response does not reach the service speed, and the rest stands", r["status"] == "completed" and r["points"] >= 60 and
            warned(r, "service_speed of 1200 rad/s") and warned(r, "(service_speed among them)"), f"{r['status']} {r.get('warnings')}")
     # A window between the speeds that are counted in any case, about the service speed.

@@ -177,7 +177,7 @@ TEST(Sentence, OfAFurtherPairSaysNoMore) {
     EXPECT_EQ(sentence(BifurcationType::hopf, criticality, 2, 4), "another pair becomes unstable");
     EXPECT_EQ(sentence(BifurcationType::flip, criticality, 1, 2), "another multiplier becomes unstable");
     EXPECT_EQ(sentence(BifurcationType::neimark_sacker, criticality, 3, 1),
-              "one pair becomes stable again with rising speed; 1 remains unstable");
+              "one pair becomes stable again with rising speed; 1 multiplier remains unstable");
   }
 }
 

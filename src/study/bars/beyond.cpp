@@ -76,16 +76,17 @@ std::string of_fold(const io::Bifurcation& b, const BranchKind& kind, int before
 
 // Something is unstable on both sides.
 std::string of_further(const io::Bifurcation& b, const BranchKind& kind, int below, int above) {
-  const char* what = b.type == Type::hopf || b.type == Type::neimark_sacker ? "pair"
-                     : kind.cycles                                          ? "multiplier"
-                                                                            : "eigenvalue";
+  const bool pair = b.type == Type::hopf || b.type == Type::neimark_sacker;
+  const char* what = pair ? "pair" : kind.cycles ? "multiplier" : "eigenvalue";
   if (above > below) return fmt::format("another {} becomes unstable", what);
-  return fmt::format("one {} becomes stable again with rising {}; {} remain{} unstable", what, place(b).substr(5),
-                     above, above == 1 ? "s" : "");
+  // Both of each pair are counted, and the others need not be pairs.
+  return fmt::format("one {} becomes stable again with rising {}; {} {}{} remain{} unstable", what, place(b).substr(5),
+                     above, kind.cycles ? "multiplier" : "eigenvalue", above == 1 ? "" : "s", above == 1 ? "s" : "");
 }
 
 std::string of_loss(const io::Bifurcation& b, const BranchKind& kind) {
   const std::string at = place(b);
+  if (kind.linear) return fmt::format("above {} {} sets in", at, with_article(b.born));
   if (b.criticality == "supercritical") return fmt::format("above {} {} grows from nothing", at, with_article(b.born));
   if (b.criticality == "subcritical")
     return fmt::format("above {} the {} jumps to {}; just below it a disturbance can trigger the same {}", at,
@@ -94,9 +95,10 @@ std::string of_loss(const io::Bifurcation& b, const BranchKind& kind) {
                      with_article(b.born), kind.shaft ? "rotor" : "system");
 }
 
-std::string of_gain(const io::Bifurcation& b, bool again) {
+std::string of_gain(const io::Bifurcation& b, const BranchKind& kind, bool again) {
   const std::string where =
       fmt::format("stable{} above {}", again ? " again" : "", brief(b.value, b.uncertainty, b.unit));
+  if (kind.linear) return fmt::format("{}: {} ends there", where, b.born);
   if (b.criticality == "supercritical") return fmt::format("{}: {} shrinks to nothing there", where, b.born);
   if (b.criticality == "subcritical")
     return fmt::format("{}: just above it a disturbance can still trigger {}", where, large(b.born));
@@ -152,7 +154,7 @@ void tell(io::Bifurcation& b, const BranchKind& kind, bool again) {
   else if (b.type == Type::branch_point)
     b.sentence = fmt::format("stable {} {}; another branch crosses here", b.stable_side, place(b));
   else
-    b.sentence = b.stable_side == "below" ? of_loss(b, kind) : of_gain(b, again);
+    b.sentence = b.stable_side == "below" ? of_loss(b, kind) : of_gain(b, kind, again);
 }
 
 void conclude(io::StudySummary& summary, const BranchVerdict& verdict, const BranchKind& kind,

@@ -15,6 +15,7 @@ struct BranchKind {
   bool self_excited = false;  ///< cycles without unbalance
   int turns = 1;              ///< revolutions in a period of forced cycles
   bool shaft = true;          ///< something turns: whirl, else oscillations
+  bool linear = false;        ///< no force depends on the motion but in proportion: nothing limits what grows
 };
 
 /// What begins at a bifurcation: "whirl", "half-frequency whirl", "second whirl", "oscillation", ...; empty for folds

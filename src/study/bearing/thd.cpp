@@ -17,6 +17,7 @@
 #include "study/findings.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
 
 namespace whirl::study {
 namespace {
@@ -53,13 +54,18 @@ struct Sweep {
     return out;
   }
 
-  // Of the journal at the last speed with a film, in clearances.
+  // The last speed with a film, by its place.
+  [[nodiscard]] std::size_t last() const {
+    std::size_t out = rows.size() - 1;
+    while (!reasons[out].empty()) --out;
+    return out;
+  }
+
+  // Of the journal there, in clearances.
   [[nodiscard]] std::array<double, 2> place() const {
-    std::size_t last = rows.size() - 1;
-    while (!reasons[last].empty()) --last;
     const auto column = [&](std::string_view name) {
       for (std::size_t c = 0; c < thd_columns().size(); ++c)
-        if (thd_columns()[c].name == name) return rows[last][c];
+        if (thd_columns()[c].name == name) return rows[last()][c];
       throw core::Bug("a column of the table is missing");
     };
     const double e = column("eccentricity"), angle = column("attitude");
@@ -117,40 +123,13 @@ StudyResult Thd::run(Context& context) {
   group.set("parameter", "speed");
   group.set("parameter_unit", "rad/s");
 
-  Pieces pieces(results, context.resume, true, core::size_of(context.comm));
-  Sweep sweep;
-  std::vector<double> last;
-  if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
-  for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
-    const double speed = options.speeds[k].value;
-    results.progress(fmt::format("speed {:.6g} rad/s", speed));
-    FilmStart start;
-    if (sweep.any() && last.empty())
-      last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
-    if (sweep.any()) start = {sweep.place(), last};
-    SolvedFilm solved;
-    if (std::string reason; !found(
-            context.comm,
-            [&] {
-              solved = solve_film(context.comm, options, geometry, speed, start);
-              sweep.rows.push_back(thd_row(*solved.film, speed));
-            },
-            reason)) {
-      sweep.lose(speed, reason);
-      continue;
-    }
-    sweep.reasons.emplace_back();
+  // Values, bars and fields are those of one speed.
+  const auto put_film = [&](const SolvedFilm& solved, double speed, const std::array<double, 2>& place,
+                            Pieces& pieces) {
     ThdFilm& film = *solved.film;
-    if (!solved.settled)
-      sweep.unsettled.push_back(fmt::format("{:.6g} rad/s ({} rounds)", speed, film.cost().iterations));
-    if (k + 1 < options.speeds.size()) {
-      last = film.thd().state();
-      if (pieces.state_due()) pieces.save(sweep.kept(film, last));
-      continue;
-    }
     put_thd_values(summary, film, options);
     const double residual = film.thd().budget().residual();
-    put_thd_bars(context, film, options, geometry, speed, {sweep.place(), {}}, residual, pieces);
+    put_thd_bars(context, film, options, geometry, speed, {place, {}}, residual, pieces);
     put_lumped(summary, film, options, geometry);
     put_effective(group, summary, film, options.ambient.temperature);
     put_properties(group, options, film.fluid(), geometry);
@@ -166,6 +145,58 @@ StudyResult Thd::run(Context& context) {
     rounds.put("residual", io::Shape{cost.largest.size(), 1}, cost.largest, "K",
                "greatest change of a temperature in each round [iteration][field]");
     put_thd_fields(context, film, geometry);
+  };
+
+  Pieces pieces(results, context.resume, true, core::size_of(context.comm));
+  Sweep sweep;
+  std::vector<double> last;
+  if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
+  SolvedFilm solved;  // at the last speed
+  for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
+    const double speed = options.speeds[k].value;
+    results.progress(fmt::format("speed {:.6g} rad/s", speed));
+    FilmStart start;
+    if (sweep.any() && last.empty())
+      last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
+    if (sweep.any()) start = {sweep.place(), last};
+    if (std::string reason; !found(
+            context.comm,
+            [&] {
+              solved = solve_film(context.comm, options, geometry, speed, start);
+              sweep.rows.push_back(thd_row(*solved.film, speed));
+            },
+            reason)) {
+      sweep.lose(speed, reason);
+      solved = {};
+      continue;
+    }
+    sweep.reasons.emplace_back();
+    ThdFilm& film = *solved.film;
+    if (!solved.settled)
+      sweep.unsettled.push_back(fmt::format("{:.6g} rad/s ({} rounds)", speed, film.cost().iterations));
+    if (k + 1 == options.speeds.size()) break;
+    last = film.thd().state();
+    if (pieces.state_due()) pieces.save(sweep.kept(film, last));
+  }
+  if (sweep.any()) {
+    const std::size_t shown = sweep.last();
+    const double speed = options.speeds[shown].value;
+    std::string reason;
+    bool there = solved.film != nullptr;
+    if (!there) {
+      // The last speeds have no film: the last one that there is, from where it was.
+      if (last.empty()) last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
+      there = found(
+          context.comm,
+          [&] {
+            solved = solve_film(context.comm, options, geometry, speed, {sweep.place(), last});
+          },
+          reason);
+      summary.warnings.push_back(
+          fmt::format("values, bars and fields are those at {:.6g} {}, the last speed with a film",
+                      deck::from_si(speed, options.speeds[shown].unit), options.speeds[shown].unit));
+    }
+    if (there) put_film(solved, speed, sweep.place(), pieces);
   }
   auto& table = group.child("budget");
   for (std::size_t c = 0; c < thd_columns().size(); ++c) {

@@ -315,7 +315,11 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
       deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path);
   put_changes(group.child("changes"), changes, unit);
   for (const BranchChange& c : changes) verdict.add(c);
-  conclude(results.summary(), verdict, {false, false, 1, system::is_rotor(context.machine)}, unit);
+  const bool rotor = system::is_rotor(context.machine);
+  const bool linear = rotor && std::ranges::all_of(context.machine.bearings, [](const system::Bearing& b) {
+                        return film::facts(b.film).coefficients;
+                      });
+  conclude(results.summary(), verdict, {false, false, 1, rotor, linear}, unit);
   put_limits(results.summary(), verdict, changes, scale, si_unit, system->parameter_is_speed());
   if (end.limited)
     put_contact(

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "study/bars/film_limit.hpp"
+#include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
@@ -74,6 +75,7 @@ public:
                     {.scheme = options.integrator.scheme, .tolerance = options.tolerance, .forces = acting(forces_)}),
         places_(system_.places()),
         films_(places_),
+        bores_(context.machine),
         table_(columns(unit_, places_.names, options.nodes)) {
     system_.set_acceleration(drive_.acceleration);
     const double from = options.range.from, to = options.range.to,
@@ -119,7 +121,11 @@ private:
       integrator_.state(x_.get());
       const system::Observed seen = system_.observe(x_.get());
       if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
-      for (std::size_t b = 0; b < n; ++b) r.samples[b].push_back(seen.shown[b].position);
+      for (std::size_t b = 0; b < n; ++b) {
+        const auto& position = seen.shown[b].position;
+        r.samples[b].push_back(position);
+        bores_.see(b, position[0], position[1], speed_at(done_ + static_cast<double>(k) / options_.samples));
+      }
       if (options_.nodes.empty()) continue;
       const std::vector<double> shaft = system_.shaft(x_.get(), 0, false);
       for (std::size_t i = 0; i < options_.nodes.size(); ++i) {
@@ -224,6 +230,7 @@ private:
     state.put("neighbours", neighbours_.flat(), "m",
               "samples of the last revolutions [revolution][place][sample][x, y]");
     state.set("first_neighbour", neighbours_.first());
+    state.put("bores", bores_.kept(), "1", "farthest places outside open bores and where [bearing][distance, speed]");
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
     state.set("seconds", context_.results.seconds());
@@ -239,6 +246,7 @@ private:
     integrator_.restart(state.real("time"), state.real("step"));
     table_.read(state.group("run_up"));
     kept_ = state.reals("kept");
+    bores_.go_on(state.reals("bores"));
     neighbours_.set(state.integer("first_neighbour"), state.reals("neighbours"),
                     places_.names.size() + options_.nodes.size(), static_cast<std::size_t>(options_.samples));
     context_.results.add_earlier_seconds(state.real("seconds"));
@@ -303,6 +311,7 @@ private:
       put_peaks(summary, "amplitude", bearings);
       if (!nodes.empty()) put_peaks(summary, "node_amplitude", nodes);
     }
+    bores_.warn(summary, unit_);
     auto& group = results.group();
     table_.write(group.child("run_up"));
     write_spectra(group);
@@ -326,6 +335,7 @@ private:
   transient::Integrator integrator_;
   system::ShownPlaces places_;
   FilmLimit films_;
+  OpenBores bores_;
   io::Table table_;
   std::vector<double> kept_;  // [sample][place and node][x, y]
   Neighbours neighbours_;
