@@ -71,10 +71,12 @@ std::vector<double> DensePencil::rounding() const {
     out[k] = std::isfinite(first) ? std::min(first, most) : most;
   }
   // The QZ algorithm is backward stable for the norm of the pencil, not row by row: with stiff springs on light masses
-  // it returns growing eigenvalues that a step of Newton's method moves by their own size. Their sign means nothing.
+  // it returns growing eigenvalues that a step of Newton's method moves by about as much as they grow. Their sign means
+  // nothing: a step of a tenth of the real part is asked for.
+  constexpr double safety = 10;
   for (std::size_t k = 0; k < values_.size(); ++k)
     if (values_[k].real() > out[k] && std::isfinite(std::abs(values_[k])))
-      out[k] = std::max(out[k], std::min(newton_step(k), std::abs(values_[k])));
+      out[k] = std::max(out[k], std::min(safety * newton_step(k), std::abs(values_[k])));
   return out;
 }
 

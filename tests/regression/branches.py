@@ -172,7 +172,7 @@ def ranks(h):
                                "studies.1.unbalance_response.range={from: 600 rpm, to: 900 rpm}"]}
     for deck, overrides in decks.items():
         for n in RANKS:
-            h.run(deck, f"{deck}.{n}", overrides, launcher=[*h.launcher, "-n", str(n)], bars=BARS or deck != "unbalance.yaml")
+            h.run(deck, f"{deck}.{n}", overrides, launcher=[*h.launcher, "-n", str(n)], bars=BARS or deck == "response.yaml")
             if n > 1:
                 for what, difference, within in same_results(h.work / f"{deck}.1", h.work / f"{deck}.{n}",
                                                              1e-7 if "layout.machine=all_ranks" in overrides else 1e-8):

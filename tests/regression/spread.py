@@ -3,7 +3,7 @@
 ranks. What a killed run leaves is written by rows and serves any number of ranks. A flip, the branch born there and the
 flip on finer films go the same way.
 
-spread.py PROGRAM SOURCE two|more LAUNCHER      two ranks; at night three and four of them, and groups that share intervals
+spread.py PROGRAM SOURCE two|flip|more LAUNCHER      two ranks; at night with the flip, three and four ranks, groups that share intervals
 """
 import shutil
 import subprocess
@@ -84,24 +84,29 @@ def compare(one, other, studies, within):
         h.close(f"{one}, {other}: bifurcation {k + 1} [rad/s]", x["value"], y["value"], 1e-4)
 
 
-def two():
-    h.run(deck("one_rank"), "whole", launcher=[])
-    alone = h.run(deck("all_ranks"), "alone", launcher=[])
-    h.true("the flip is met and followed", [s["points"] for s in alone.values()] == [3, 3, 2], f"{[s['points'] for s in alone.values()]}")
-    compare("alone", "whole", ("s", "s flip 1"), 1e-6)
+def two(more):
+    flip = more == FLIP
+    studies = ("s", "s flip 1") if flip else ("s",)
+    h.run(deck("one_rank", more), "whole", launcher=[])
+    alone = h.run(deck("all_ranks", more), "alone", launcher=[])
+    points = [s["points"] for s in alone.values()]
+    h.true("the flip is met and followed" if flip else "three points", points == ([3, 3, 2] if flip else [3]), f"{points}")
+    compare("alone", "whole", studies, 1e-6)
     found = datasets(h.work / "alone/results.h5")
     real, imag = (found[f"studies/s/branch/multipliers_{part}"] for part in ("real", "imag"))
     h.true("multipliers that were not searched for are no numbers, and none is zero",
            numpy.isnan(real[:, -1]).all() and not numpy.any((real == 0) & (imag == 0)), f"{real[0]}")
-    # Killed within its first point, and behind it; the rest on as many ranks, with all that was left.
-    h.true("two ranks: killed with a journal by rows", killed("two", 2, FLIP, "state/journal/vector 1"))
-    h.true("two ranks: killed with cycles by rows", killed("two", 2, FLIP, "state/state/cycle/states"))
+    # Killed within the location of the flip, and behind the first point; the rest on as many ranks, with all that was left.
+    if flip:
+        h.true("two ranks: killed with a journal by rows", killed("two", 2, more, "state/journal/vector 1"))
+    h.true("two ranks: killed with cycles by rows", killed("two", 2, more, "state/state/cycle/states"))
     shutil.copytree(h.work / "two", h.work / "one")
     for name, ranks in (("two", 2), ("one", 1)):
-        h.run(deck("all_ranks"), name, flags=["--resume"], launcher=on(ranks))
-        compare(name, "alone", ("s", "s flip 1"), 1e-7)
-        fine = [h.studies(run)["fine"]["bifurcations"][0]["value"] for run in (name, "alone")]
-        h.close(f"{name}, alone: the flip's limit of fine films [rad/s]", fine[0], fine[1], 1e-4)
+        h.run(deck("all_ranks", more), name, flags=["--resume"], launcher=on(ranks))
+        compare(name, "alone", studies, 1e-7)
+        if flip:
+            fine = [h.studies(run)["fine"]["bifurcations"][0]["value"] for run in (name, "alone")]
+            h.close(f"{name}, alone: the flip's limit of fine films [rad/s]", fine[0], fine[1], 1e-4)
 
 
 def more():
@@ -119,8 +124,5 @@ def more():
     h.true("it says so", said.startswith("intervals shared by 2 groups, a machine on each one's 1 ranks"), said)
 
 
-if sys.argv[3] == "two":
-    two()
-else:
-    more()
+{"two": lambda: two(SHORT), "flip": lambda: two(FLIP), "more": more}[sys.argv[3]]()
 h.finish()
