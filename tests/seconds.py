@@ -20,10 +20,10 @@ SMALL = 2  # seconds that any test may take without a line in the file
 BEYOND = 1.5  # other work on the same cores costs that much
 
 
-def budgets(guessed=True):
-    """Seconds by test; lines with an asterisk are guesses."""
+def budgets():
+    """Seconds by test."""
     lines = (line.split() for line in (pathlib.Path(__file__).parent / "budget.txt").read_text().splitlines())
-    return {words[0]: float(words[1]) for words in lines if words and words[0] != "#" and (guessed or words[-1] != "*")}
+    return {words[0]: float(words[1]) for words in lines if words and words[0] != "#"}
 
 
 def taken(build):
@@ -67,7 +67,7 @@ def tests_of(ctest, build):
 
 
 def budget(ctest, build):
-    allowed, tests = budgets(guessed=False), tests_of(ctest, build)
+    allowed, tests = budgets(), tests_of(ctest, build)
     errors = [f"budget.txt: there is no test {name}" for name in allowed.keys() - tests.keys()]
     tiers = {"commit": [n for n, labels in tests.items() if "commit" in labels],
              "main": [n for n, labels in tests.items() if "heavy" not in labels]}

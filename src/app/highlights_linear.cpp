@@ -127,7 +127,7 @@ std::string peaks_at(const std::string& place, const std::vector<io::PeakEntry>&
 
 }  // namespace
 
-// Peaks of the shaft; those of the journals stand in the report.
+// Peaks at nodes of the shaft. The report has the peaks of the journals, too.
 std::string of_response(const io::StudySummary& s) {
   std::string out;
   std::vector<std::string> places;

@@ -33,7 +33,7 @@ std::string of_cycles(const io::StudySummary& s, const Values& v) {
   return out;
 }
 
-// The threshold is that of the study, and not the first Hopf point of the list: on a falling range that is another one.
+// The study says which speed is the threshold. On a falling range it is not the first Hopf point of the list.
 std::string of_equilibria(const io::StudySummary& s, const Values& v) {
   const auto threshold = v.get("threshold"), whirl = v.get("whirl_frequency");
   if (!threshold || v.unit("threshold") != "rad/s") return {};

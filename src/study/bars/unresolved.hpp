@@ -7,8 +7,9 @@
 
 namespace whirl::study {
 
-/// Angular frequency [rad/s] above which the longest waves in some beam of the shaft have no node on it: the lowest
-/// (pi/L)^2 (E I/m')^(1/2), that of a beam of the length L of an element on two pins. Infinite without beams.
+/// Lowest angular frequency [rad/s] at which half a wave fits into one element of the shaft: omega = (pi/L)^2 (E
+/// I/m')^(1/2), the first bending frequency of a pinned beam of the element's length L. Infinite without beams.
+/// Source: Rao (2011), Mechanical Vibrations, sec. 8.5 (lateral vibration of beams).
 [[nodiscard]] double resolved_to(const rotor::Options& shaft);
 
 /// Whether an eigenvalue that grows is a vibration of the elements: above resolved_to(), and its growth is less than

@@ -214,7 +214,7 @@ StudyResult DynamicCoefficients::run(Context& context) {
   summary.points = static_cast<long>(found.size() - lost);
   if (lost > 0) return context.results.finish(status_of(lost, found.size(), "speeds", "coefficients"), true);
   const auto [without, all] = motions_without_values(enforced_of(found));
-  // Those of a small motion stand beside the enforced ones that were asked for, and are none of them.
+  // Coefficients of a small motion are written beside the enforced ones. They do not count as enforced motions.
   return context.results.finish(status_of(without, all, "enforced motions", "values"), all == 0 || without < all);
 }
 

@@ -123,7 +123,7 @@ StudyResult Thd::run(Context& context) {
   group.set("parameter", "speed");
   group.set("parameter_unit", "rad/s");
 
-  // Values, bars and fields are those of one speed.
+  // Writes values, bars and fields of one speed.
   const auto put_film = [&](const SolvedFilm& solved, double speed, const std::array<double, 2>& place,
                             Pieces& pieces) {
     ThdFilm& film = *solved.film;
