@@ -239,7 +239,7 @@ class Results:
             deck = path.read_text(encoding="utf-8")
             loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
             # The program writes none; aliases of aliases make a small file a tree without end.
-            if any(isinstance(token, yaml.AliasToken) for token in yaml.scan(deck, loader)):
+            if any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(deck, loader)):
                 raise Error(f"{path} is no deck that whirl wrote: it holds aliases")
             return yaml.load(deck, loader)
         except (ImportError, OSError):

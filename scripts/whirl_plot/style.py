@@ -10,6 +10,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 from cycler import cycler  # noqa: E402
+from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402
+from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
 from .manifest import register  # noqa: E402
@@ -136,18 +138,25 @@ def save(figure, study, what, note="", handles=(), columns=6, of=""):
 
 def write(figure, stem):
     """The figure as `stem`.png of 256 colours, a third of the size of one of all (lines on white need no more), and as
-    `stem`.svg. Each is named in the run's manifest before it is written. Returns their paths."""
+    `stem`.svg. Each is named in the run's manifest before it is written. Returns their paths.
+
+    The layout is computed once, for all formats. Figure.savefig would compute it for each, and walk through all artists once more."""
     files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
+    figure.set_facecolor("white")
+    figure.set_dpi(plt.rcParams["savefig.dpi"])
+    figure.get_layout_engine().execute(figure)
+    figure.set_layout_engine("none")
     for path in files:
         if path.suffix == ".png":
-            drawn = io.BytesIO()
-            figure.savefig(drawn, format="png", facecolor="white")
-            few_colours(Image.open(drawn).convert("RGB")).save(path, format="PNG", optimize=True)
+            canvas = FigureCanvasAgg(figure)
+            canvas.draw()
+            few_colours(np.asarray(canvas.buffer_rgba())).save(path, format="PNG")
         elif path.suffix == ".pdf":
-            figure.savefig(path, format="pdf", facecolor="white", metadata={"CreationDate": None})
+            figure.savefig(path, format="pdf", metadata={"CreationDate": None})
         else:
-            figure.savefig(path, format="svg", facecolor="white", metadata={"Date": None}, dpi=90)
-            path.write_text(shorter(path.read_text(encoding="utf-8")), encoding="utf-8")
+            text = io.StringIO()
+            FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
+            path.write_text(shorter(text.getvalue()), encoding="utf-8")
     return files
 
 
@@ -159,19 +168,25 @@ def shorter(svg):
     return re.sub(r"\n *", "\n", svg)
 
 
-def few_colours(image):
-    """In 256 colours: the 128 of the largest areas as they are, maximum coverage of the rest, which keeps the hue of thin lines
-    and small marks."""
-    pixels = np.asarray(image).astype(np.int64) @ (1 << 16, 1 << 8, 1)
-    codes, place, count = np.unique(pixels.ravel(), return_inverse=True, return_counts=True)
-    colours = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=1)
-    frequent = colours[np.argsort(-count, kind="stable")[:128]]
-    rest = image.quantize(256 - len(frequent), method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).getpalette()
-    palette = np.concatenate([frequent, np.reshape(rest, (-1, 3))])[:256]
-    nearest = np.concatenate([np.argmin(((part[:, None] - palette)**2).sum(axis=2), axis=1)
-                              for part in np.array_split(colours, 1 + len(colours) // 4096)])
-    few = Image.fromarray(nearest[place].reshape(pixels.shape).astype(np.uint8), mode="P")
-    few.putpalette(palette.astype(np.uint8).tobytes())
+def few_colours(pixels):
+    """Opaque RGBA [row][column] as an image of 256 colours: the 128 of the largest areas as they are; then, one by one, the colour that is
+    farthest from all of these, which keeps the hue of thin lines and small marks."""
+    codes = np.ascontiguousarray(pixels).view(np.uint32).ravel()
+    # Most pixels are those of their left neighbour: only runs of equal ones are sorted.
+    starts = np.flatnonzero(np.concatenate([[True], codes[1:] != codes[:-1]]))
+    lengths = np.diff(starts, append=len(codes))
+    values, place = np.unique(codes[starts], return_inverse=True)
+    colours = values.view(np.uint8).reshape(-1, 4)[:, :3].astype(np.float32)
+    frequent = np.argsort(-np.bincount(place, lengths), kind="stable")[:128]
+    palette, nearest, least = [], np.zeros(len(colours), np.uint8), np.full(len(colours), np.inf, np.float32)
+    while len(palette) < 256 and least.max() > 0:
+        one = frequent[len(palette)] if len(palette) < len(frequent) else np.argmax(least)
+        square = ((colours - colours[one])**2).sum(axis=1)
+        closer = square < least
+        nearest[closer], least[closer] = len(palette), square[closer]
+        palette.append(one)
+    few = Image.fromarray(np.repeat(nearest[place], lengths).reshape(pixels.shape[:2]), mode="P")
+    few.putpalette(colours[palette].astype(np.uint8).tobytes())
     return few
 
 

@@ -98,6 +98,19 @@ def labels():
     assert "1.1234 2.56789 (3.45678" in style.shorter("<text>1.1234 2.56789 (3.45678</text>"), "numbers behind spaces and brackets"
 
 
+def palettes():
+    """256 colours keep those of large areas and what differs most from all others, however small; fewer colours stay as they are."""
+    ramp = np.full((64, 64, 4), 255, np.uint8)
+    ramp[:32, :, 2] = np.arange(32)[:, None] * 4
+    ramp[:32, :, 1] = np.arange(64)
+    ramp[40, 40] = (200, 16, 46, 255)
+    few = np.asarray(style.few_colours(ramp).convert("RGB"))
+    assert len(np.unique(few.reshape(-1, 3), axis=0)) == 256 and tuple(few[40, 40]) == (200, 16, 46) and (few[50:] == 255).all()
+    assert np.linalg.norm(few - ramp[..., :3].astype(float), axis=-1).max() < 10, "far from its colour"
+    plain = ramp[30:]
+    assert (np.asarray(style.few_colours(plain).convert("RGB")) == plain[..., :3]).all()
+
+
 def smooth_curves():
     t = 2 * np.pi * np.arange(32) / 32
     dense = curves.periodic(np.stack([np.cos(t), np.sin(3 * t)], axis=1), 4)
@@ -216,6 +229,6 @@ def facts():
     assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"
 
 
-for check in (module, frames, command_lines, labels, smooth_curves, borders_of_curves, clearances, facts):
+for check in (module, frames, command_lines, labels, palettes, smooth_curves, borders_of_curves, clearances, facts):
     check()
 print("the module and the numbers behind the pictures are right")
