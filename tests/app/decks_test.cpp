@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <regex>
@@ -34,6 +35,13 @@ std::vector<std::string> all_decks() {
 
 study::Deck load(const std::string& path, const std::vector<std::string>& overrides = {}) {
   return study::load(MPI_COMM_WORLD, path, overrides);
+}
+
+// Compiled once: every value of every deck is held against the patterns of its option.
+const std::regex& pattern(const std::string& text) {
+  static std::map<std::string, std::regex> all;
+  const auto found = all.find(text);
+  return found != all.end() ? found->second : all.emplace(text, text).first->second;
 }
 
 Json json_of(const deck::Node& n) {
@@ -68,7 +76,7 @@ std::string invalid(const Json& schema, const Json& value, const std::string& pa
     if (!fits) return path + " is not of type " + schema["type"].dump() + ": " + value.dump();
   }
   if (schema.contains("pattern") && value.is_string() &&
-      !std::regex_search(value.get<std::string>(), std::regex(schema["pattern"].get<std::string>())))
+      !std::regex_search(value.get<std::string>(), pattern(schema["pattern"].get<std::string>())))
     return path + " does not match the pattern: " + value.dump();
   if (value.is_number()) {
     if (schema.contains("minimum") && value < schema["minimum"]) return path + " is too small";
