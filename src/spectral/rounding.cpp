@@ -7,6 +7,24 @@
 #include <limits>
 
 namespace whirl::spectral {
+namespace {
+
+// A x of all vectors x, by two products of real matrices: Eigen multiplies a real matrix and a complex one entry by
+// entry.
+Eigen::MatrixXcd images(const Eigen::MatrixXd& a, const std::vector<Eigen::VectorXcd>& vectors) {
+  const auto count = static_cast<Eigen::Index>(vectors.size());
+  Eigen::MatrixXd real(a.rows(), count), imaginary(a.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    real.col(k) = vectors[static_cast<std::size_t>(k)].real();
+    imaginary.col(k) = vectors[static_cast<std::size_t>(k)].imag();
+  }
+  Eigen::MatrixXcd out(a.rows(), count);
+  out.real() = a * real;
+  out.imag() = a * imaginary;
+  return out;
+}
+
+}  // namespace
 
 void DensePencil::add(std::complex<double> value, const std::vector<double>& real,
                       const std::vector<double>& imaginary) {
@@ -21,12 +39,11 @@ void DensePencil::add(std::complex<double> value, const std::vector<double>& rea
 Eigen::MatrixXcd DensePencil::left() const {
   const Eigen::Index n = a_.rows();
   if (static_cast<Eigen::Index>(values_.size()) != n) return {};
-  Eigen::MatrixXcd x(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) x.col(k) = vectors_[static_cast<std::size_t>(k)];
-  Eigen::MatrixXcd images = b_ * x;
+  Eigen::MatrixXcd of_b = images(b_, vectors_);
   for (Eigen::Index k = 0; k < n; ++k)
-    if (!std::isfinite(std::abs(values_[static_cast<std::size_t>(k)]))) images.col(k) = a_ * x.col(k);
-  return images.partialPivLu().inverse();
+    if (const auto i = static_cast<std::size_t>(k); !std::isfinite(std::abs(values_[i])))
+      of_b.col(k) = a_ * vectors_[i];
+  return of_b.partialPivLu().inverse();
 }
 
 double DensePencil::newton_step(std::size_t k) const {
@@ -61,13 +78,15 @@ std::vector<double> DensePencil::rounding() const {
   const auto asked = [&](std::complex<double> v) { return std::abs(v.real()) <= asked_below * largest; };
   const bool any = std::any_of(values_.begin(), values_.end(), asked);
   const Eigen::MatrixXcd left = any ? this->left() : Eigen::MatrixXcd();
+  const Eigen::MatrixXcd of_a = any ? images(a_, vectors_) : left, of_b = any ? images(b_, vectors_) : left;
+  const double size_a = a_.norm(), size_b = b_.norm();
   for (std::size_t k = 0; k < values_.size(); ++k) {
     if (!asked(values_[k])) continue;
-    const double size = a_.norm() + std::abs(values_[k]) * b_.norm(), most = std::sqrt(eps) * size / b_.norm();
-    const double left_over = (a_ * vectors_[k] - values_[k] * (b_ * vectors_[k])).norm();
+    const auto column = static_cast<Eigen::Index>(k);
+    const double size = size_a + std::abs(values_[k]) * size_b, most = std::sqrt(eps) * size / size_b;
+    const double left_over = (of_a.col(column) - values_[k] * of_b.col(column)).norm();
     const double first =
-        left.size() > 0 ? (eps * size * vectors_[k].norm() + left_over) * left.row(static_cast<Eigen::Index>(k)).norm()
-                        : 1e-11 * largest;
+        left.size() > 0 ? (eps * size * vectors_[k].norm() + left_over) * left.row(column).norm() : 1e-11 * largest;
     out[k] = std::isfinite(first) ? std::min(first, most) : most;
   }
   // The QZ algorithm is backward stable for the norm of the pencil, not row by row: with stiff springs on light masses
