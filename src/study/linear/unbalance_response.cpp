@@ -197,8 +197,11 @@ void judge(const io::StudySummary& summary, Listed& peak) {
   entry.verdict = "undetermined";
 }
 
-// At the operating speed and at all peaks in any case. Equilibria know of no loss factor: of such shafts nothing is
-// asked.
+// Places show one resonance at speeds that differ by parts of this: one of them is counted.
+constexpr double one_resonance = 1e-3;
+
+// At the operating speed and at all resonances in any case. Equilibria know of no loss factor: of such shafts nothing
+// is asked.
 StableSpeeds stability(const Context& context, const std::vector<Response>& curve, const std::vector<Place>& places,
                        const std::optional<deck::Quantity>& operating, const StableSpeeds::Count& count) {
   if (context.machine.rotor.loss_factor > 0) return {};
@@ -209,7 +212,11 @@ StableSpeeds stability(const Context& context, const std::vector<Response>& curv
   }
   for (const Place& place : places) {
     const ResponseCurve of = curve_at(curve, place.of, place.at);
-    for (const std::size_t k : of.tops()) always.push_back(of.speed[k]);
+    for (const std::size_t k : of.tops()) {
+      const double top = of.speed[k];
+      if (std::ranges::none_of(always, [&](double s) { return std::abs(s - top) < one_resonance * top; }))
+        always.push_back(top);
+    }
   }
   std::ranges::sort(speeds);
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
