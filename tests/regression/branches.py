@@ -24,7 +24,8 @@ def nearest(study, speed, kinds=("cyclic_fold", "flip", "neimark_sacker", "branc
 
 def reference(h):
     """The main job: cycles and bifurcations of both unbalances."""
-    run = h.run("unbalance.yaml", "main")
+    # Branches born at flips: period_doubling().
+    run = h.run("unbalance.yaml", "main", [grade + option for grade in (G25, G63) for option in ("follow_flips=false", "flips=[]")])
     for grade, speed, records in (("G2.5", 2700, (84, 85, 86)), ("G2.5", 3600, (80, 81, 82)),
                                   ("G6.3", 2700, (90, 91, 92)), ("G6.3", 3600, (87, 88, 89))):
         s = run[grade]

@@ -73,7 +73,8 @@ def rigid(h):
 
 
 def compliant(h):
-    run = h.run((h.source / "inputs/compliant_rotor/stability_chart.yaml").resolve(), "chart")
+    run = h.run((h.source / "inputs/compliant_rotor/stability_chart.yaml").resolve(), "chart",
+                ["studies.{2,4}.locus.range={from: 0.08, to: 1.3}"])
     there = h.run((h.source / "inputs/compliant_rotor/short.yaml").resolve(), "there", overrides=[
         "bearings.half.film.compliance=1", "studies.1.equilibrium_branch.range={from: 320 rad/s, to: 400 rad/s}",
         "studies.2.cycle_branch.range={from: 340 rad/s, to: 400 rad/s}"])

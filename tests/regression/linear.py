@@ -33,7 +33,7 @@ def condition(h):
 def whirl_map(h):
     """Of an isotropic rotor every node moves on circles; springs that differ make ellipses, lines at rest and mixed modes."""
     deck = h.source / "inputs/merot/disc_rotor.yaml"
-    study = "studies=[{modes: {name: map, range: {from: 0 rad/s, to: 10000 rad/s}, points: 5, count: 6}}]"
+    study = "studies=[{modes: {name: map, speeds: [0 rad/s, 2500 rad/s, 5000 rad/s, 7500 rad/s, 10000 rad/s], count: 6}}]"
     h.run(deck, "isotropic", [study], launcher=[])
     with h5py.File(h.work / "isotropic" / "results.h5") as f:
         speed, turning = f["studies/map/spectrum/speed"][()], f["studies/map/whirl_map/turning"][()]

@@ -161,10 +161,11 @@ SHORT = """
 """
 
 
-def growing(h):
-    """The train at G6.3: a whirl at 766 +- 12 rpm (independent computation, Guyan, 30 x 10) leaves the unstable cycle of 2650 rpm,
-    and settles on a torus at 2600 rpm, beyond the supercritical Neimark-Sacker point."""
-    found = h.run(h.source / "inputs/turbine_train/motions.yaml", "growing", launcher=[], bars=False)
+def growing(h, whole=False):
+    """The train at G6.3: a whirl at 766 +- 12 rpm (independent computation, Guyan, 30 x 10) leaves the unstable cycle of 2650 rpm.
+    At night: it settles on a torus at 2600 rpm, beyond the supercritical Neimark-Sacker point."""
+    one = ["studies.1.cycle_branch.max_points=1", "studies.2={static: {name: at rest, speed: 2600 rpm}}", "studies.3.motion.exponents=1"]
+    found = h.run(h.source / "inputs/turbine_train/motions.yaml", "growing", [] if whole else one, launcher=[], bars=False)
     s = found["G6.3 at 2650 rpm"]
     h.true("the cycle is unstable", value(s, "cycle.multiplier.1.modulus") > 1)
     whirl = value(s, "cycle.multiplier.1.angle") / TWO_PI * 2650
@@ -174,6 +175,8 @@ def growing(h):
         h.close(f"the growing tone in {bearing} [rpm]", min(tones, key=lambda f: abs(f - 766)), whirl, 3)
         h.close("    and its mirror beside the shaft's speed", min(tones, key=lambda f: abs(f - 1884)), 2650 - whirl, 3)
     h.true("on its way", kind(s) == "unsettled", kind(s))
+    if not whole:
+        return
     s = found["G6.3 at 2600 rpm"]
     h.true("the cycle of 2600 rpm is unstable", value(s, "cycle.multiplier.1.modulus") > 1)
     h.true("its motion is quasi-periodic", kind(s) == "quasi_periodic", kind(s))
@@ -184,7 +187,8 @@ def torus(h, whole=False):
     """The train at G2.5 beyond its Neimark-Sacker point: what leaves the cycle there has the growth and the whirl of its multiplier;
     at 5050 rpm it ends on a torus. Shortened to what is on its way."""
     short = [f"studies.{k}.motion.{option}" for k, options in
-             ((2, ("discard=60", "revolutions=200")), (3, ("discard=400", "revolutions=400"))) for option in options]
+             ((2, ("discard=60", "revolutions=200", "exponents=1")), (3, ("discard=250", "revolutions=300", "exponents=1"))) for option in options]
+    short.append("studies.1.cycle_branch.range={from: 4900 rpm, to: 5150 rpm}")
     found = h.run(h.source / "inputs/turbine_train/torus.yaml", "torus", [] if whole else short, launcher=[])
     with h5py.File(h.work / "torus/results.h5") as f:
         curves = {name: numpy.column_stack([f[f"studies/{name}/poincare/{c}"][:] for c in ("x", "y")])
@@ -284,7 +288,7 @@ def pump(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    cases = {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "growing": growing,
+    cases = {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "growing": growing, "growing.whole": lambda h: growing(h, True),
              "torus": torus, "torus.whole": lambda h: torus(h, True), "ranks": ranks, "resume": resume, "shared": shared,
              "pump": pump}
     cases[sys.argv[3]](harness)
