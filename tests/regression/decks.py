@@ -152,7 +152,7 @@ def liners(h):
     few, common = "bearings.*.film.cells=[16, 4]", ("name: G2.5, unbalance: [gen_pair], parameter: speed, range: {from: 3600 rpm, "
         "to: 3650 rpm}, step: {initial: 50 rpm, min: 0.01 rpm, max: 50 rpm}, max_points: 1")
     cycles = []
-    for name, method in (("picard", "method: newton_picard, scheme: sdirk_4, intervals: 1, steps: 24, radius: 0.2"),
+    for name, method in (("picard", "method: newton_picard, scheme: sdirk_4, intervals: 1, steps: 16, radius: 0.2"),
                          ("collocation", "intervals: 30, degree: 3, adapt_mesh: false")):
         s = h.run("liners.yaml", name, [few, f"studies=[{{cycle_branch: {{{common}, {method}}}}}]"])["G2.5"]
         h.true(f"the cycle by {name}", s["points"] == 1, s["status"])

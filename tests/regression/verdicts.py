@@ -74,7 +74,7 @@ def criticality(h):
 
 def neimark_sacker(h):
     found = []
-    for cells in ([60, 16], [120, 24]):
+    for cells in ([40, 12], [60, 16]):
         s = h.run("unbalance.yaml", f"cells {cells[0]}",
                   [*(f"bearings.B{b}.film.cells={cells}" for b in range(1, 6)),
                    "studies=[{cycle_branch: {name: G6.3, unbalance: [gen_pair_g63], parameter: speed, intervals: 60, "
