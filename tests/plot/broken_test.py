@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Truncated, empty and foreign results: `plot`, `report` and the module say one sentence, exit code 2, no traceback."""
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -9,6 +10,7 @@ import h5py
 
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
+import command  # noqa: E402
 import synthetic  # noqa: E402
 
 import whirl  # noqa: E402
@@ -51,13 +53,15 @@ CASES = {
     "a summary of something else": lambda f: (f / "summary.json").write_text('{"studies": [{"speed": 1}]}'),
     "a deck that is none": lambda f: (f / "resolved.yaml").write_text("a: [1, 2\n"),
 }
-for words, damage in CASES.items():
-    with tempfile.TemporaryDirectory() as name:
+with tempfile.TemporaryDirectory() as name:
+    whole = pathlib.Path(name) / "whole"
+    synthetic.make(whole)
+    for words, damage in CASES.items():
         folder = pathlib.Path(name) / "x"
-        synthetic.make(folder)
+        shutil.copytree(whole, folder)
         damage(folder)
         for script in ("plot", "report"):
-            done = subprocess.run([str(ROOT / "scripts" / script), str(folder)], capture_output=True, text=True)
+            done = command.call(script, folder, draw=())
             said = done.stderr.strip()
             assert done.returncode == 2, f"{script} of {words}: exit {done.returncode}\n{said}"
             assert said and "\n" not in said and "Traceback" not in said and len(said) < 400, f"{script} of {words} says\n{said}"
@@ -65,11 +69,12 @@ for words, damage in CASES.items():
         try:
             whirl.read(folder).deck
         except whirl.Error:
+            shutil.rmtree(folder)
             continue
         sys.exit(f"FAILED: the module reads {words}")
 
 with tempfile.TemporaryDirectory() as name:
     for script in ("plot", "report"):
         done = subprocess.run([str(ROOT / "scripts" / script), f"{name}/none"], capture_output=True, text=True)
-        assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
+        assert done.returncode == 2 and done.stderr.count("\n") == 1 and done.stderr.startswith(f"{script}: "), done.stderr
 print("one sentence each")
