@@ -321,6 +321,11 @@ StudySummary study(const Json& j) {
 
 }  // namespace
 
+double Quantity::bar() const {
+  const auto at = more.find("uncertainty");
+  return at != more.end() && std::isfinite(at->second) ? at->second : 0;
+}
+
 const char* name_of(BifurcationType type) {
   return bifurcation_names[static_cast<std::size_t>(type)];
 }

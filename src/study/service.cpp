@@ -33,11 +33,6 @@ std::size_t rank_of(const std::string& word) {
   return at == words.end() ? undetermined : static_cast<std::size_t>(at - words.begin());
 }
 
-double bar_of(const Quantity& q) {
-  const auto at = q.more.find("uncertainty");
-  return at != q.more.end() && std::isfinite(at->second) ? at->second : 0;
-}
-
 std::map<std::string, double> bar(double error) {
   return std::isfinite(error) && error > 0 ? std::map<std::string, double>{{"uncertainty", error}}
                                            : std::map<std::string, double>{};
@@ -158,7 +153,7 @@ private:
     for (const io::Bifurcation& b : s.bifurcations) take(b.value, b.unit, b.uncertainty);
     for (const auto& [name, q] : s.values)
       if (name == "threshold" || between(name, "unstable.", ".from") || between(name, "unstable.", ".to"))
-        take(q.value, q.unit, bar_of(q));
+        take(q.value, q.unit, q.bar());
     return error;
   }
 
@@ -266,7 +261,7 @@ private:
     for (const auto& [name, q] : s.values)
       if (const auto k = between(name, "critical.", ".speed"); k && std::isfinite(q.value)) {
         const Quantity* delta = find(s, "critical." + *k + ".log_decrement");
-        if (delta && delta->value - bar_of(*delta) > damped) continue;
+        if (delta && delta->value - delta->bar() > damped) continue;
         take_critical(q, delta ? fmt::format("log decrement {:.3g}", delta->value) : "", "critical speed", "", s.name);
       }
   }
@@ -340,12 +335,12 @@ private:
       const std::string journal = name.substr(place + 14, name.rfind('.') - place - 14);
       std::string mark = "cycle, half of peak to peak in " + name.substr(name.rfind('.') + 1);
       if (const Quantity* largest = find(s, name.substr(0, place) + ".multiplier.modulus")) {
-        const double over = largest->value - 1, bar_of_it = bar_of(*largest);
+        const double over = largest->value - 1, bar_of_it = largest->bar();
         mark += std::abs(over) <= bar_of_it ? ", whose stability is undetermined"
                 : over > 0                  ? ", which is unstable"
                                             : "";
       }
-      keep(vibration_, {"largest vibration", journal, {q.value / 2, "m", bar(bar_of(q) / 2)}, mark, s.name}, true);
+      keep(vibration_, {"largest vibration", journal, {q.value / 2, "m", bar(q.bar() / 2)}, mark, s.name}, true);
     }
   }
 

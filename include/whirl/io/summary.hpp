@@ -17,6 +17,9 @@ struct Quantity {
   double value = no_value;
   std::string unit = {};
   std::map<std::string, double> more = {};  ///< "uncertainty" and its parts, in the same unit
+
+  /// Half the error bar, `unit`; 0 if none is known.
+  [[nodiscard]] double bar() const;
 };
 
 enum class BifurcationType { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point };

@@ -7,14 +7,6 @@
 #include <cmath>
 
 namespace whirl::study {
-namespace {
-
-double bar_of(const io::Quantity& q) {
-  const auto at = q.more.find("uncertainty");
-  return at != q.more.end() && std::isfinite(at->second) ? at->second : 0;
-}
-
-}  // namespace
 
 std::optional<deck::Range> operating_range(const std::optional<deck::Range>& range,
                                            const std::optional<deck::Quantity>& speed,
@@ -64,7 +56,7 @@ void warn_of_amplification(io::StudySummary& summary) {
   std::vector<High> high;  // one of each resonance, which shows at many places
   constexpr double near = 0.01;
   const auto see = [&](const io::Quantity& factor, const io::Quantity& speed, const std::string& where) {
-    if (!(factor.value - bar_of(factor) > high_amplification)) return;
+    if (!(factor.value - factor.bar() > high_amplification)) return;
     const High here{factor.value, speed.value,
                     fmt::format("{:.3g} at {:.5g} {}{}", factor.value, speed.value, speed.unit, where)};
     const auto known = std::ranges::find_if(

@@ -8,11 +8,6 @@ namespace {
 
 constexpr double damped = 2.5;
 
-double bar_of(const io::Quantity& q) {
-  const auto at = q.more.find("uncertainty");
-  return at != q.more.end() && std::isfinite(at->second) ? at->second : 0;
-}
-
 }  // namespace
 
 Separation separation(double speed, double amplification, double from, double to) {
@@ -29,12 +24,12 @@ Separation separation(double speed, double amplification, double from, double to
 
 std::string margin_verdict(const io::Quantity& amplification_factor, const io::Quantity& actual,
                            const io::Quantity& required) {
-  const double factor = amplification_factor.value, bar = bar_of(amplification_factor);
+  const double factor = amplification_factor.value, bar = amplification_factor.bar();
   if (!std::isfinite(factor)) return {};
   if (factor + bar < damped) return "damped, not critical";
   if (factor - bar < damped) return "undetermined";
   if (required.unit.empty() || !std::isfinite(required.value)) return {};
-  const double missing = required.value - actual.value, bars = bar_of(required) + bar_of(actual);
+  const double missing = required.value - actual.value, bars = required.bar() + actual.bar();
   if (missing != 0 && std::abs(missing) <= bars) return "undetermined";
   return missing > 0 ? "too near" : "far enough";
 }
