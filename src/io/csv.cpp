@@ -58,14 +58,14 @@ std::vector<std::string> order(const Group& group) {
   return names;
 }
 
-struct Column {
+struct TextColumn {
   std::string head;
   const Dataset* data;
   std::size_t first, stride;
 };
 
 // Of all axes but the first: `name.B1`, `name.order 2.B1`; places without a name are numbered from 1.
-void add_columns(const std::string& name, const Dataset& d, std::vector<Column>& columns) {
+void add_columns(const std::string& name, const Dataset& d, std::vector<TextColumn>& columns) {
   const std::string unit = d.unit.empty() || d.unit == "1" ? "" : " [" + d.unit + "]";
   std::size_t width = 1;
   for (std::size_t axis = 1; axis < d.shape.size(); ++axis) width *= d.shape[axis];
@@ -109,7 +109,7 @@ std::optional<std::size_t> rows_of(const Group& group) {
 std::string text_of(const Group& group) {
   const std::optional<std::size_t> rows = rows_of(group);
   if (!rows) return {};
-  std::vector<Column> columns;
+  std::vector<TextColumn> columns;
   const bool wide = std::any_of(group.datasets().begin(), group.datasets().end(),
                                 [](const auto& d) { return !d.second.labels.empty(); });
   for (const std::string& name : order(group)) {
@@ -120,10 +120,10 @@ std::string text_of(const Group& group) {
   }
   if (columns.empty() || columns.size() * std::max<std::size_t>(*rows, 1) > most_cells) return {};
   std::string out;
-  for (const Column& c : columns) out += (&c == &columns.front() ? "" : ",") + quoted(c.head);
+  for (const TextColumn& c : columns) out += (&c == &columns.front() ? "" : ",") + quoted(c.head);
   out += '\n';
   for (std::size_t row = 0; row < *rows; ++row) {
-    for (const Column& c : columns)
+    for (const TextColumn& c : columns)
       out += (&c == &columns.front() ? "" : ",") + quoted(value(*c.data, row * c.stride + c.first));
     out += '\n';
   }

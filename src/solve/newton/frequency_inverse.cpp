@@ -16,7 +16,7 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::VectorXd;
 using ConstMap = Eigen::Map<const VectorXd>;
-using Map = Eigen::Map<VectorXd>;
+using Slice = Eigen::Map<VectorXd>;
 
 FrequencyInverse::FrequencyInverse(problem::System& system, std::unique_ptr<problem::PartInverse> approximate)
     : system_(system), approximate_(std::move(approximate)), gate_(system.comm()) {}
@@ -75,7 +75,7 @@ void FrequencyInverse::multiply(Vec x, Vec y) {
   const core::ReadArray xa(x);
   const core::WriteArray ya(y);
   const Index n = by_a_.size();
-  Map real(ya.data(), n), imaginary(ya.data() + n, n);
+  Slice real(ya.data(), n), imaginary(ya.data() + n, n);
   multiply(*a_, xa.data(), by_a_.data());
   multiply(*b_, xa.data(), by_b_.data());
   real = by_a_ + lambda_.real() * by_b_;
@@ -92,8 +92,8 @@ void FrequencyInverse::apply_at(const Complex* r, Complex* y, std::ptrdiff_t row
     {
       const core::WriteArray to(right_.get());
       const Eigen::Map<const Eigen::VectorXcd> from(r + c * rows, n);
-      Map(to.data(), n) = from.real();
-      Map(to.data() + n, n) = from.imag();
+      Slice(to.data(), n) = from.real();
+      Slice(to.data() + n, n) = from.imag();
     }
     gate_.rethrow(KSPSolve(ksp_.get(), right_.get(), answer_.get()));
     PetscInt taken = 0;

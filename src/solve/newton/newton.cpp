@@ -13,7 +13,6 @@
 #include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
-namespace {
 
 using core::check;
 
@@ -28,6 +27,8 @@ struct SolveContext {
   std::vector<double> residuals;  // of the last nonlinear solve, which writes them
   int patience = 0, small_falls = 0;
 };
+
+namespace {
 
 void bordered_residual(SolveContext& c, Vec u, Vec r) {
   c.problem.residual(u, r);

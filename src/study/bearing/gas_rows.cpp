@@ -48,7 +48,7 @@ void write(io::Group& g, const GasRow& row) {
   g.put("fields", std::move(texts), "name, unit and pad of each field");
 }
 
-GasRow read(const io::Group& g, double speed) {
+GasRow row_from(const io::Group& g, double speed) {
   GasRow row;
   row.speed = speed;
   const std::vector<double>&place = g.reals("place"), &capacity = g.reals("capacity");
@@ -102,7 +102,7 @@ GasRow gas_row(MPI_Comm comm, Pieces& pieces, const std::string& name, double sp
     }
     write(g, row);
   });
-  return read(kept, speed);
+  return row_from(kept, speed);
 }
 
 std::vector<std::string> reasons_of(const std::vector<GasRow>& rows) {

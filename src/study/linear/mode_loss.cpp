@@ -18,9 +18,9 @@ namespace {
 
 using core::check;
 using Complex = std::complex<double>;
-using Sparse = Eigen::SparseMatrix<Complex>;
+using ComplexSparse = Eigen::SparseMatrix<Complex>;
 
-Sparse whole(Mat distributed) {
+ComplexSparse whole(Mat distributed) {
   core::Matrix all;
   check(MatCreateRedundantMatrix(distributed,
                                  core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(distributed))),
@@ -36,7 +36,7 @@ Sparse whole(Mat distributed) {
     for (PetscInt k = 0; k < count; ++k) entries.emplace_back(r, columns[k], values[k]);
     check(MatRestoreRow(all.get(), r, &count, &columns, &values));
   }
-  Sparse out(n, n);
+  ComplexSparse out(n, n);
   out.setFromTriplets(entries.begin(), entries.end());
   return out;
 }
@@ -44,7 +44,7 @@ Sparse whole(Mat distributed) {
 // In the scales of the system: dF/dx without loss, dF/d(dx/dt), and the rotor's K and K x [[0, 1], [-1, 0]] on its
 // displacements.
 struct Pencil {
-  Sparse at_rest, rates, stiffness, turning;
+  ComplexSparse at_rest, rates, stiffness, turning;
   Eigen::VectorXcd scale;  // of the states
 };
 
@@ -66,10 +66,10 @@ Pencil pencil_of(system::RotorSystem& system, Vec x) {
   p.at_rest = jacobian(1, 0, {});
   p.turning = jacobian(1, 0, {0, 1}) - p.at_rest;
   // K stands on velocities there, each behind its displacement.
-  const Sparse on_velocities = jacobian(1, 0, {1, 0}) - p.at_rest;
+  const ComplexSparse on_velocities = jacobian(1, 0, {1, 0}) - p.at_rest;
   std::vector<Eigen::Triplet<Complex>> entries;
   for (Eigen::Index c = 1; c < on_velocities.cols(); ++c)
-    for (Sparse::InnerIterator e(on_velocities, c); e; ++e)
+    for (ComplexSparse::InnerIterator e(on_velocities, c); e; ++e)
       if (e.value() != 0.0) entries.emplace_back(e.row(), c - 1, e.value() * p.scale(c - 1) / p.scale(c));
   p.stiffness.resize(p.at_rest.rows(), p.at_rest.cols());
   p.stiffness.setFromTriplets(entries.begin(), entries.end());
@@ -78,7 +78,7 @@ Pencil pencil_of(system::RotorSystem& system, Vec x) {
 }
 
 // dF/dx with the loss of one sense of whirl.
-Sparse with_loss(const Pencil& p, double eta, int sense) {
+ComplexSparse with_loss(const Pencil& p, double eta, int sense) {
   return p.at_rest + Complex(0, eta * (1 + sense) / 2) * p.stiffness + Complex(eta * (1 - sense) / 2) * p.turning;
 }
 
@@ -91,12 +91,12 @@ struct Vibration {
 // Newton's method of (a + lambda b) u = 0 is inverse iteration whose shift is the last eigenvalue. Frequencies below a
 // thousandth of the `fastest` are measured against that: stiff shafts leave their rounding to slow motions on soft
 // springs.
-void refine(const Sparse& a, const Sparse& b, double fastest, Vibration& v) {
-  Eigen::SparseLU<Sparse> lu;
+void refine(const ComplexSparse& a, const ComplexSparse& b, double fastest, Vibration& v) {
+  Eigen::SparseLU<ComplexSparse> lu;
   constexpr int most = 30;
   double change = 1, before = 2;
   for (int k = 0; k < most; ++k) {
-    const Sparse t = a + v.lambda * b;
+    const ComplexSparse t = a + v.lambda * b;
     if (k == 0) lu.analyzePattern(t);
     lu.factorize(t);
     if (lu.info() != Eigen::Success) return;  // the eigenvalue to the last digit
@@ -112,12 +112,12 @@ void refine(const Sparse& a, const Sparse& b, double fastest, Vibration& v) {
 
 // Modes that are one frequency without loss may be mixed in any way: planar motion is forward and backward whirl, which
 // a loss parts. One step of inverse iteration beside them, in their own span, finds what becomes modes.
-void part(const Sparse& a, const Sparse& b, double eta, std::span<Vibration> together) {
+void part(const ComplexSparse& a, const ComplexSparse& b, double eta, std::span<Vibration> together) {
   const auto n = static_cast<Eigen::Index>(together.size());
   Eigen::MatrixXcd u(together[0].shape.size(), n);
   for (Eigen::Index k = 0; k < n; ++k) u.col(k) = together[static_cast<std::size_t>(k)].shape;
   const Complex beside = together[0].lambda + eta * std::abs(together[0].lambda) * Complex(0.31, 0.17);
-  Eigen::SparseLU<Sparse> lu(a + beside * b);
+  Eigen::SparseLU<ComplexSparse> lu(a + beside * b);
   if (lu.info() != Eigen::Success) throw core::NotConverged("modes with loss: the matrix beside them is singular");
   const Eigen::MatrixXcd w = lu.solve(Eigen::MatrixXcd(b * u));
   const spectral::Eigenpairs small = spectral::complex_eigenpairs(u.householderQr().solve(w));
@@ -139,7 +139,7 @@ void add_loss(const Pencil& p, const system::RotorSystem& system, double eta, st
         break;
     const std::span<Vibration> together(modes.data() + first, end - first);
     for (int step = 1; step <= steps; ++step) {
-      const Sparse a = with_loss(p, eta * step / steps, sense);
+      const ComplexSparse a = with_loss(p, eta * step / steps, sense);
       if (step == 1 && together.size() > 1) part(a, p.rates, eta / steps, together);
       for (Vibration& v : together) refine(a, p.rates, std::abs(modes.back().lambda), v);
     }
