@@ -1,8 +1,15 @@
-# whirl_room(NAME USES target...): a static library whirl_NAME of all .cpp files below src/NAME with headers in include/whirl/NAME.
+# whirl_room(NAME USES target... [ALONE file...]): a static library whirl_NAME of all .cpp files below src/NAME with headers in
+# include/whirl/NAME. Files named ALONE have options of their own.
 function(whirl_room name)
-  cmake_parse_arguments(ROOM "" "" "USES;PRIVATE" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
-  add_library(whirl_${name} STATIC ${sources})
+  cmake_parse_arguments(ROOM "" "" "USES;PRIVATE;ALONE" ${ARGN})
+  set(room ${PROJECT_SOURCE_DIR}/src/${name})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${room}/*.cpp)
+  list(TRANSFORM ROOM_ALONE PREPEND ${room}/)
+  if(ROOM_ALONE)
+    list(REMOVE_ITEM sources ${ROOM_ALONE})
+  endif()
+  whirl_batches(batches ${name} ${sources})
+  add_library(whirl_${name} STATIC ${batches} ${ROOM_ALONE})
   add_library(whirl::${name} ALIAS whirl_${name})
   target_include_directories(whirl_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   whirl_use_precompiled(whirl_${name} whirl_headers)

@@ -7,8 +7,13 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 add_library(whirl_flags INTERFACE)
-target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow
-                       -Wnon-virtual-dtor -Wold-style-cast -Werror)
+target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast -Werror)
+# A local name may hide one of another file that is compiled with it.
+if(WHIRL_UNITY)
+  target_compile_options(whirl_flags INTERFACE -Wshadow=local)
+else()
+  target_compile_options(whirl_flags INTERFACE -Wshadow)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 reports its own AVX-512 intrinsics as uninitialised.
   target_compile_options(whirl_flags INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized)
