@@ -15,6 +15,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
 from .manifest import register  # noqa: E402
+from .ticks import remembered  # noqa: E402
 
 INK, GREY, LIGHT = "#222222", "#7a7a7a", "#d9d9d9"
 # Each colour means one thing: the two directions, the studies of a run, damping and stability; over a parameter, viridis.
@@ -144,20 +145,31 @@ def write(figure, stem):
     files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
     figure.set_facecolor("white")
     figure.set_dpi(plt.rcParams["savefig.dpi"])
-    figure.get_layout_engine().execute(figure)
-    figure.set_layout_engine("none")
-    for path in files:
-        if path.suffix == ".png":
-            canvas = FigureCanvasAgg(figure)
-            canvas.draw()
-            few_colours(np.asarray(canvas.buffer_rgba())).save(path, format="PNG")
-        elif path.suffix == ".pdf":
-            figure.savefig(path, format="pdf", metadata={"CreationDate": None})
-        else:
-            text = io.StringIO()
-            FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
-            path.write_text(shorter(text.getvalue()), encoding="utf-8")
+    with remembered():
+        figure.get_layout_engine().execute(figure)
+        figure.set_layout_engine("none")
+        for path in files:
+            PRINTED[path.suffix](figure, path)
     return files
+
+
+def print_png(figure, path):
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    few_colours(np.asarray(canvas.buffer_rgba())).save(path, format="PNG")
+
+
+def print_svg(figure, path):
+    text = io.StringIO()
+    FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
+    path.write_text(shorter(text.getvalue()), encoding="utf-8")
+
+
+def print_pdf(figure, path):
+    figure.savefig(path, format="pdf", metadata={"CreationDate": None})
+
+
+PRINTED = {".png": print_png, ".svg": print_svg, ".pdf": print_pdf}
 
 
 def shorter(svg):
@@ -178,10 +190,12 @@ def few_colours(pixels):
     values, place = np.unique(codes[starts], return_inverse=True)
     colours = values.view(np.uint8).reshape(-1, 4)[:, :3].astype(np.float32)
     frequent = np.argsort(-np.bincount(place, lengths), kind="stable")[:128]
+    # Squares of lengths are whole numbers below 2^24, which float32 holds.
+    size = (colours**2).sum(axis=1)
     palette, nearest, least = [], np.zeros(len(colours), np.uint8), np.full(len(colours), np.inf, np.float32)
     while len(palette) < 256 and least.max() > 0:
         one = frequent[len(palette)] if len(palette) < len(frequent) else np.argmax(least)
-        square = ((colours - colours[one])**2).sum(axis=1)
+        square = size - 2 * (colours @ colours[one]) + size[one]
         closer = square < least
         nearest[closer], least[closer] = len(palette), square[closer]
         palette.append(one)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The module `whirl` on synthetic results, and the numbers behind the pictures: curves, clearances, peaks, multipliers."""
+import contextlib
 import os
 import pathlib
 import sys
@@ -7,6 +8,7 @@ import tempfile
 import types
 
 import numpy as np
+from matplotlib.axis import Axis
 
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
@@ -109,6 +111,38 @@ def palettes():
     assert np.linalg.norm(few - ramp[..., :3].astype(float), axis=-1).max() < 10, "far from its colour"
     plain = ramp[30:]
     assert (np.asarray(style.few_colours(plain).convert("RGB")) == plain[..., :3]).all()
+
+
+def ticks_once():
+    """Pictures whose ticks are remembered are those of matplotlib, byte by byte, and are asked for their ticks once for each of two layouts
+    and for each format."""
+    def pictures(folder):
+        figure, axes = style.plt.subplots(2, 2, sharex="col")
+        axes[0, 0].plot([0, 3], [1e9 + 1, 1e9 + 4])  # with an offset above the title
+        axes[1, 0].semilogy([0, 3], [1e-9, 3])
+        axes[0, 1].set_aspect("equal")
+        axes[0, 1].plot([-4, 4], [0, 90])
+        figure.colorbar(axes[1, 1].pcolormesh(np.arange(6.0).reshape(2, 3)), ax=axes[1, 1], label="p [MPa]")
+        for axis in axes.ravel():
+            axis.set_title("one")
+            axis.set_ylabel("y [m]")
+        files = style.write(figure, folder / "ticks")
+        style.plt.close(figure)
+        return len(figure.axes), [file.read_bytes() for file in files]
+
+    asked = []
+    real, kept = Axis._update_ticks, style.remembered
+    Axis._update_ticks = lambda axis: asked.append(axis) or real(axis)
+    style.use_style()
+    try:
+        with tempfile.TemporaryDirectory() as name:
+            count, quick = pictures(pathlib.Path(name))
+            few = len(asked)
+            style.remembered = contextlib.nullcontext
+            _, slow = pictures(pathlib.Path(name))
+    finally:
+        Axis._update_ticks, style.remembered = real, kept
+    assert quick == slow and few <= 4 * 2 * count < len(asked) / 2, (few, len(asked))
 
 
 def smooth_curves():
@@ -229,6 +263,6 @@ def facts():
     assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"
 
 
-for check in (module, frames, command_lines, labels, palettes, smooth_curves, borders_of_curves, clearances, facts):
+for check in (module, frames, command_lines, labels, palettes, ticks_once, smooth_curves, borders_of_curves, clearances, facts):
     check()
 print("the module and the numbers behind the pictures are right")
