@@ -48,6 +48,24 @@ bool find_entries(MPI_Comm comm, Mat matrix, VectorXd& inverse, Eigen::VectorX<P
   return single != 0;
 }
 
+// Up to this many states the making of a solver of PETSc takes longer than all of the arithmetic.
+constexpr PetscInt small = 64;
+
+MatrixXd dense(Mat matrix) {
+  PetscInt n = 0;
+  check(MatGetSize(matrix, &n, nullptr));
+  MatrixXd out = MatrixXd::Zero(n, n);
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(matrix, i, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k) out(i, columns[k]) = values[k];
+    check(MatRestoreRow(matrix, i, &count, &columns, &values));
+  }
+  return out;
+}
+
 // Solves to rounding, so that products are exact: factorised on every rank, with one step of refinement for what LU
 // without pivoting loses. No reductions, which cost more than the arithmetic of a machine without parts.
 core::LinearSolver make_solver(MPI_Comm comm, Mat matrix) {
@@ -72,7 +90,13 @@ core::LinearSolver make_solver(MPI_Comm comm, Mat matrix) {
 
 StageSolver::StageSolver(core::Matrix matrix) : matrix_(std::move(matrix)) {
   MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(matrix_.get()));
-  if (!find_entries(comm, matrix_.get(), inverse_, column_)) solver_ = make_solver(comm, matrix_.get());
+  if (find_entries(comm, matrix_.get(), inverse_, column_)) return;
+  PetscInt n = 0;
+  check(MatGetSize(matrix_.get(), &n, nullptr));
+  if (core::size_of(comm) == 1 && n <= small)
+    dense_.emplace(dense(matrix_.get()));
+  else
+    solver_ = make_solver(comm, matrix_.get());
 }
 
 bool StageSolver::entrywise(Mat matrix) {
@@ -92,6 +116,11 @@ void StageSolver::solve(Vec rhs, Vec x, double tolerance) const {
   }
   const core::ReadArray b(rhs);
   const core::WriteArray a(x);
+  if (dense_) {
+    const auto n = static_cast<Index>(b.size());
+    Eigen::Map<VectorXd>(a.data(), n) = dense_->solve(Eigen::Map<const VectorXd>(b.data(), n));
+    return;
+  }
   for (Index i = 0; i < inverse_.size(); ++i) a[column_(i)] = inverse_(i) * b[static_cast<PetscInt>(i)];
 }
 

@@ -2,8 +2,10 @@
 // The matrices of one stage of a Runge-Kutta step, distributed in space.
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <optional>
 
 #include "whirl/core/petsc.hpp"
 
@@ -14,8 +16,9 @@ class PortKrylov;
 class PortMatrix;
 
 /// matrix^-1: entry by entry where each row and column has one entry (masses beside rates q'); by FGMRES and the
-/// elimination of the parts of a similar matrix; or by LU, on each rank where there are several. Both read PETSc
-/// options with the prefix "stage_". Collective on the matrix' communicator.
+/// elimination of the parts of a similar matrix; or by LU, on each rank where there are several, and as a dense matrix
+/// if it is small and on one rank. All but the first and the last read PETSc options with the prefix "stage_".
+/// Collective on the matrix' communicator.
 class StageSolver {
 public:
   /// Entry by entry or by LU.
@@ -26,7 +29,7 @@ public:
   /// To the relative residual `tolerance` where it iterates, else to rounding.
   void solve(Vec rhs, Vec x, double tolerance) const;
   /// The matrix is one entry 1/inverse()(i) in local row i at local column column()(i), on every rank.
-  [[nodiscard]] bool entrywise() const { return !solver_ && !blocks_; }
+  [[nodiscard]] bool entrywise() const { return !solver_ && !dense_ && !blocks_; }
   /// Whether a matrix is of this kind. Collective.
   [[nodiscard]] static bool entrywise(Mat matrix);
   [[nodiscard]] const Eigen::VectorXd& inverse() const { return inverse_; }
@@ -37,6 +40,7 @@ public:
 private:
   core::Matrix matrix_;
   core::LinearSolver solver_;
+  std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> dense_;
   Eigen::VectorXd inverse_;
   Eigen::VectorX<PetscInt> column_;
   std::shared_ptr<const PortMatrix> blocks_;
