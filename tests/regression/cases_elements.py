@@ -8,7 +8,7 @@ import sys
 
 import h5py
 import numpy as np
-from harness import Harness, value
+from harness import RANKS, Harness, value
 
 HZ = 2 * math.pi
 
@@ -54,7 +54,7 @@ def pump(h):
     h.true("the shapes of the modes without coefficients are those in two bearings", np.all(alike("empty", "two bearings") > 1 - 1e-6), str(alike("empty", "two bearings")))
     h.true("with seals they are others", np.any(alike("elements", "two bearings") < 0.99), str(alike("elements", "two bearings")))
     h.true("modes with seals differ", all(abs(a["imag"] - b["imag"]) > 1 for a, b in zip(s["modes"]["modes"], two)))
-    for ranks in ("2", "3"):
+    for ranks in map(str, RANKS[1:]):
         few = "studies=[{static: {name: at speed, speed: 5000 rpm}}, {modes: {name: modes, speeds: [5000 rpm], count: 4}}]"
         r = h.run(deck(h, "feed_pump_elements"), f"ranks {ranks}", [few, "layout.machine=all_ranks"], launcher=[*h.launcher, "-n", ranks])
         for a, b in zip(r["modes"]["modes"], s["modes"]["modes"], strict=True):

@@ -50,12 +50,12 @@ studies:
     return path
 
 
-def killed(name, ranks, more, wanted, groups=1, most=40):
-    """A run, resumed if there is one, that kills itself at one checkpoint after another until one holds the dataset `wanted`: whether
+def killed(name, ranks, more, wanted, groups=1, most=40, apart=1):
+    """A run, resumed if there is one, that kills itself at each `apart`-th checkpoint until one holds the dataset `wanted`: whether
     that is by rows. None if there is none such."""
     out = h.work / name
     for _ in range(most):
-        flags = ["--stop-after-checkpoint", "1", *(["--resume"] if out.exists() else [])]
+        flags = ["--stop-after-checkpoint", str(apart), *(["--resume"] if out.exists() else [])]
         subprocess.run(h.command(deck("all_ranks", more, groups), out, flags=flags, launcher=on(ranks)), stdout=subprocess.DEVNULL,
                        stderr=subprocess.DEVNULL)
         if not (out / "s.checkpoint.h5").exists():
@@ -99,7 +99,7 @@ def two(more):
     # Killed within the location of the flip, and behind the first point; the rest on as many ranks, with all that was left.
     if flip:
         h.true("two ranks: killed with a journal by rows", killed("two", 2, more, "state/journal/vector 1"))
-    h.true("two ranks: killed with cycles by rows", killed("two", 2, more, "state/state/cycle/states"))
+    h.true("two ranks: killed with cycles by rows", killed("two", 2, more, "state/state/cycle/states", apart=1 if flip else 3))
     shutil.copytree(h.work / "two", h.work / "one")
     for name, ranks in (("two", 2), ("one", 1)):
         h.run(deck("all_ranks", more), name, flags=["--resume"], launcher=on(ranks))

@@ -41,11 +41,11 @@ def deck(h, name, studies):
 
 def cycles(h, methods, cells):
     """Cycles from the Hopf point to L = 1."""
-    within = {"newton_picard_short": 8e-5}
+    within, tolerance = {"newton_picard_short": 8e-5}, {"newton_picard_short": "1e-8"}
     period, multipliers = CYCLES[cells]
     studies = "".join(f"  - cycle_branch: {{name: {name}, origin: hopf, parameter: brusselator.length,"
                       f" range: {{from: 0.45, to: 1}}, step: {{initial: 0.01, min: 1e-6, max: 0.1}},"
-                      f" {METHODS[name]}, tolerance: 1e-11, at: [1], detect: []}}\n" for name in methods)
+                      f" {METHODS[name]}, tolerance: {tolerance.get(name, '1e-11')}, at: [1], detect: []}}\n" for name in methods)
     run = h.run(deck(h, "cycles", studies), "cycles", [f"brusselator.cells={cells}"])
     with h5py.File(h.work / "cycles/results.h5") as results:
         for name in methods:
@@ -140,7 +140,7 @@ def flows(h, whole=False):
     h.close("    their sum", sum(value(attractor, f"lyapunov.{k}") for k in (1, 2, 3)), -(10 + 1 + 8 / 3), 1e-3)
     h.true("    chaotic", "motion.chaotic" in attractor["values"])
     h.close("    dimension of Kaplan and Yorke", value(attractor, "dimension.kaplan_yorke"), 2.062, 0.005)
-    spiral = flow("rossler", "rossler", 400 if whole else 200)
+    spiral = flow("rossler", "rossler", 400 if whole else 120)
     for k, wanted in enumerate((0.0714, 0.0, -5.3943), 1):
         h.close(f"Rossler, exponent {k}", value(spiral, f"lyapunov.{k}"), wanted, 1.5 * value(spiral, f"lyapunov.{k}.uncertainty"))
     h.true("    chaotic", "motion.chaotic" in spiral["values"])

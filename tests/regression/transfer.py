@@ -21,8 +21,8 @@ def branch(where):
 CASES = {
     "short": ("compliant_rotor/short.yaml", (400, 480), []),
     "long": ("compliant_rotor/long.yaml", (140, 180), []),
-    "finite": ("compliant_rotor/finite.yaml", (370, 430), []),
-    "water": ("compliant_rotor/water_bearing.yaml", (400, 470), []),
+    "finite": ("compliant_rotor/finite.yaml", (370, 430), ["bearings.half.film.cells=[24, 6]"]),
+    "water": ("compliant_rotor/water_bearing.yaml", (400, 470), ["bearings.*.film.cells=[40, 4]"]),
     "damped": ("compliant_rotor/short.yaml", (380, 640), ["bearings.half.film.liner_damping=0.1 ms", "bearings.half.film.cells=[40, 4]"]),
     "conserving": ("rigid_rotor/mass_conserving.yaml", (400, 480),
                    ["bearings.*.film.cells=[24, 4]", "bearings.*.film.grooves.1.pressure=2 kPa"]),
