@@ -1,4 +1,6 @@
 """Smooth curves through computed points: cycles over a period, branches along their arclength."""
+import functools
+
 import numpy as np
 
 DENSE = 16  # pieces that a stretch between two points is drawn in
@@ -97,6 +99,14 @@ class Branch:
         return ((1 + 2 * t) * (1 - t)**2 * values[i] + t * (1 - t)**2 * h * slope[i]
                 + t**2 * (3 - 2 * t) * values[i + 1] + t**2 * (t - 1) * h * slope[i + 1])
 
+    def _segments(self, prepared):
+        """The cubics [segment][part] of a curve, at DENSE + 1 points of each segment."""
+        return self._cubic(prepared, self.s, np.arange(len(self.s) - 1)[:, None], np.linspace(0, 1, DENSE + 1))
+
+    @functools.cached_property
+    def _dense(self):
+        return self._segments(self._own)
+
     def with_points(self, values, places, known):
         """The branch with further points at places (ascending, one a segment at most) where a curve has the values `known`: that
         branch, the curve through all, and the index of each new point."""
@@ -121,8 +131,7 @@ class Branch:
         n = len(self.parameter)
         if n < 2:
             return (0, 0.0)
-        t = np.linspace(0, 1, DENSE + 1)
-        dense = np.array([self._cubic(self._own, self.s, i, t) for i in range(n - 1)])
+        t, dense = np.linspace(0, 1, DENSE + 1), self._dense
         if kind in ("fold", "cyclic_fold"):
             flat = np.concatenate([dense[:, :-1].ravel(), dense[-1:, -1]])
             slope = np.sign(np.diff(flat))
@@ -130,11 +139,11 @@ class Branch:
             if len(turns):
                 k = turns[np.argmin(np.abs(flat[turns] - value))]
                 return (min(k // DENSE, n - 2), k % DENSE / DENSE if k // DENSE < n - 1 else 1.0)
+        d = dense - value
         found = []
-        for i in range(n - 1):
-            d = dense[i] - value
-            for k in np.nonzero((d[:-1] * d[1:] < 0) | (d[:-1] == 0))[0]:
-                found.append((i, t[k] + (t[1] - t[0]) * (d[k] / (d[k] - d[k + 1]) if d[k] != d[k + 1] else 0.0)))
+        for i, k in np.argwhere((d[:, :-1] * d[:, 1:] < 0) | (d[:, :-1] == 0)):
+            before, after = d[i, k:k + 2]
+            found.append((int(i), t[k] + (t[1] - t[0]) * (before / (before - after) if before != after else 0.0)))
         if dense[-1, -1] == value:
             found.append((n - 2, 1.0))
         if not found:
@@ -161,6 +170,7 @@ class Branch:
             return []
         stable = np.asarray(stable, bool)
         prepared = self._prepare(values)
+        dense = self._segments(prepared)
         cuts = dict(changes or {})
         for place in places:
             if place is not None and stable[place[0]] != stable[place[0] + 1]:
@@ -168,8 +178,11 @@ class Branch:
         pieces = []
 
         def add(i, a, b, solid):
-            t = np.linspace(a, b, DENSE + 1)
-            x, y = self._cubic(self._own, self.s, i, t), self._cubic(prepared, self.s, i, t)
+            if (a, b) == (0.0, 1.0):
+                x, y = self._dense[i], dense[i]
+            else:
+                t = np.linspace(a, b, DENSE + 1)
+                x, y = self._cubic(self._own, self.s, i, t), self._cubic(prepared, self.s, i, t)
             if pieces and pieces[-1][2] == solid:
                 pieces[-1][0].append(x[1:])
                 pieces[-1][1].append(y[1:])
