@@ -73,6 +73,7 @@ TEST(RubberLiner, BendsTheResonance) {
     study::Deck deck =
         study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_13.yaml",
                     {"bars=none", film + "cells=[60, 4]", film + "rubber_thickness=" + rubber,
+                     "studies.1.cycle_branch.intervals=16", "studies.1.cycle_branch.step.max=16 rad/s",
                      "studies.1.cycle_branch.range={from: 300 rad/s, to: " + to + "}"});
     return test::run_deck(deck, name).at(0);
   };
@@ -94,6 +95,8 @@ TEST(Contact, ABranchGoesOnWhereItTouched) {
   const auto run = [](const std::string& to, std::vector<std::string> film, bool contact, const std::string& name) {
     film.emplace_back("bars=none");
     film.push_back("studies.2.cycle_branch.range={from: 240 rad/s, to: " + to + "}");
+    film.emplace_back("studies.2.cycle_branch.intervals=16");
+    film.emplace_back("studies.2.cycle_branch.step.max=16 rad/s");
     if (contact) film.emplace_back("bearings.half.film.contact={roughness: 0.5 um, pressure: 1 MPa}");
     study::Deck deck =
         study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_7.yaml", film);
@@ -101,8 +104,8 @@ TEST(Contact, ABranchGoesOnWhereItTouched) {
     return test::run_deck(deck, name).at(0).status;
   };
   const std::vector<std::string> finite = {"bearings.half.film.type=compliant_finite",
-                                           "bearings.half.film.cells=[16, 4]", "bearings.half.film.quadrature=sub_cell",
-                                           "studies.2.cycle_branch.intervals=20"};
+                                           "bearings.half.film.cells=[16, 4]",
+                                           "bearings.half.film.quadrature=sub_cell"};
   EXPECT_EQ(run("470 rad/s", {}, true, "contact"), "completed");
   EXPECT_EQ(run("510 rad/s", finite, true, "finite_contact"), "completed");
   EXPECT_NE(run("510 rad/s", finite, false, "finite_touches").find("touches"), std::string::npos);

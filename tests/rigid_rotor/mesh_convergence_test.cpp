@@ -55,7 +55,7 @@ TEST(MeshConvergence, FinestMeshIsThatOfABranchComputedOnIt) {
                      "bearings.rubber.film.cells=[" + std::to_string(cells) + ", 4]",
                      "studies=[{cycle_branch: {name: branch, unbalance: [residual], intervals: 16, degree: 3, "
                      "adapt_mesh: false, orbits: 0, tolerance: 1e-11, range: {from: 300 rad/s, to: 560 rad/s}, "
-                     "step: {initial: 4 rad/s, min: 0.0001 rad/s, max: 16 rad/s}}}" +
+                     "step: {initial: 4 rad/s, min: 0.0001 rad/s, max: 32 rad/s}}}" +
                          more + "]"});
     return test::run_deck(deck, "mesh_convergence_" + name);
   };
