@@ -161,6 +161,6 @@ TEST(Solvers, FoldsByEachOfThem) {
         follow(problem, rest(solve::uniform_mesh(intervals), points(), 1, 4), [&] { return problem.multipliers(); }),
         reference, tolerance, what);
   };
-  picard(solve::sdirk(2), 1, 48, 2e-2, "shooting-based Newton-Picard");
-  picard(solve::classical(), 48, 1, 1e-3, "finite-difference-based Newton-Picard");
+  picard(solve::sdirk(2), 1, 32, 2e-2, "shooting-based Newton-Picard");
+  picard(solve::classical(), 32, 1, 1e-3, "finite-difference-based Newton-Picard");
 }

