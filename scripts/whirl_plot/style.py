@@ -144,11 +144,12 @@ def write(figure, stem):
     The layout is computed once, for all formats. Figure.savefig would compute it for each, and walk through all artists once more."""
     files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
     figure.set_facecolor("white")
-    figure.set_dpi(plt.rcParams["savefig.dpi"])
     with remembered():
+        figure.set_dpi(plt.rcParams["savefig.dpi"])
         figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")
         for path in files:
+            figure.set_dpi(plt.rcParams["savefig.dpi"])  # an SVG leaves its own
             PRINTED[path.suffix](figure, path)
     return files
 
