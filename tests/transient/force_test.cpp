@@ -74,11 +74,11 @@ TEST(Force, StepsOfAnOscillatorAreExact) {
   if (core::size_of(MPI_COMM_WORLD) > 2) GTEST_SKIP() << "every step of a distributed system costs messages";
   const Oscillator o{2, 3, 800};
   const Step step{.amplitude = 5, .start = 0.137, .end = 0.61};
-  const double end = 1.5;
+  const bool alone = core::size_of(MPI_COMM_WORLD) == 1;
+  const double end = alone ? 1.5 : 0.7;
   const Eigen::Vector2d wanted = 5 * (step_response(o, end - 0.137) - step_response(o, end - 0.61));
   double before = 0;
-  const bool alone = core::size_of(MPI_COMM_WORLD) == 1;
-  for (const double tolerance : alone ? std::vector{1e-6, 1e-9} : std::vector{1e-6}) {
+  for (const double tolerance : alone ? std::vector{1e-6, 1e-9} : std::vector{1e-5}) {
     Forces forces = with(step);
     const Played r = played(o, forces, end, tolerance, MPI_COMM_WORLD);
     const double error = (r.end - wanted).cwiseQuotient(Eigen::Vector2d(1e-3, 1e-1)).norm();

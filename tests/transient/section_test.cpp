@@ -39,7 +39,7 @@ TEST(Section, IsFoundWhereTheMotionCrosses) {
   const std::complex<double> z = 1.0 / std::complex<double>(1 - 1.3 * 1.3, 0.26);
   const double value = 0.3 * std::abs(z), end = 3 * two_pi / 1.3;
   double last = 0;
-  for (const double tolerance : core::size_of(MPI_COMM_WORLD) == 1 ? std::vector{1e-6, 1e-9} : std::vector{1e-6}) {
+  for (const double tolerance : core::size_of(MPI_COMM_WORLD) == 1 ? std::vector{1e-6, 1e-9} : std::vector{1e-5}) {
     std::vector<double> heights;
     const auto t = crossings(s, {1.3}, test::LinearOscillator::exact(0, 1.3), value, transient::Sense::rising, end, 48,
                              tolerance, nullptr, &heights);
