@@ -89,7 +89,7 @@ TEST(Periodic, EverySolverAnswersWhatBranchesAsk) {
   const MPI_Comm space = core::size_of(MPI_COMM_WORLD) <= 2 ? MPI_COMM_WORLD : PETSC_COMM_SELF;
   test::SmallSystem s(space, 2, parameter, speed, HalfTurn{});
   solve::NewtonPicardOptions o;
-  solve::NewtonPicardProblem shooting(s, o, solve::sdirk(4), 80, {0, 1});
+  solve::NewtonPicardProblem shooting(s, o, solve::sdirk(4), 48, {0, 1});
   o.constant_rates = true;
   solve::NewtonPicardProblem differences(s, o, solve::classical(), 1, test::uneven_mesh(4));
   expect_answers(shooting, s, "shooting-based Newton-Picard");
