@@ -49,7 +49,10 @@ covers("whirl frequency", b["whirl_frequency_rad_s"], b["uncertainty_whirl_frequ
 # elements. Bars of cycles leave it out and say so: on 40 elements a second whirl sets in at 679.50 rad/s.
 s = run("shaft_mesh.yaml", "response", "unbalance={u: {planes: [{node: 2, amount: 1e-5 kg m}]}}", "rotor.stiffness_damping=1e-6 s",
         "studies=[{unbalance_response: {name: r, unbalance: [u], range: {from: 100 rad/s, to: 640 rad/s}, points: 20, nodes: [2]}}, "
-        "{cycle_branch: {name: c, unbalance: [u], parameter: speed, range: {from: 720 rad/s, to: 640 rad/s}, intervals: 8, degree: 3, points: gauss}}]")
+        "{cycle_branch: {name: c, unbalance: [u], parameter: speed, range: {from: 720 rad/s, to: 640 rad/s}, intervals: 8, degree: 3, points: gauss}}, "
+        "{frequency_response: {name: t, speed: 100 rad/s, inputs: [{node: 2, direction: x}], range: {from: 100 rad/s, to: 400 rad/s}, points: 7}}]")
+q = s["t"]["values"]["node.2.x.from.node.2.x.largest"]
+covers("transfer function at 400 rad/s", q["value"] * 1e6, q["uncertainty"] * 1e6, 2.299986, 0.2)
 peaks = {p["place"]: p for p in s["r"]["peaks"]}
 h.true("a peak of the node and of both journals", list(peaks) == ["node 2", "left, journal", "right, journal"], str(list(peaks)))
 for place, height in (("node 2", 1148.08e-6), ("left, journal", 45.5430e-6)):

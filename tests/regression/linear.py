@@ -129,7 +129,8 @@ def response(h):
     stiff = ["studies.1.frequency_response={name: disc, speed: 0 rad/s, range: {from: 0.1 rad/s, to: 0.2 rad/s}, points: 2, inputs: [{bearing: left, direction: x}]}",
              "bearings.*.film.stiffness=1e3 N/m"]
     s = h.run(deck, "soft", stiff, launcher=[], bars=True)["disc"]
-    h.true("without film meshes no bars", "uncertainty" not in s["values"]["bearing.left.x.from.bearing.left.x.largest"])
+    bar = s["values"]["bearing.left.x.from.bearing.left.x.largest"]["uncertainty"]
+    h.true("the mesh of the shaft hardly matters to it", 0 < bar < 1e-9, str(bar))
     h.close("a soft spring at rest [m/N]", value(s, "bearing.left.x.from.bearing.left.x.largest"), 1e-3, 1e-6)
 
 

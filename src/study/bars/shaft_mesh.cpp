@@ -20,14 +20,32 @@ bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout)
          machine.rotor.type == rotor::Options::Type::shaft;
 }
 
+namespace {
+
+// Shafts of shorter elements have other matrices.
+bool matters(const system::Machine& machine, const LayoutOptions& layout) {
+  return has_shaft_mesh(machine, layout) && machine.rotor.reduction.type != rotor::Reduction::Type::guyan;
+}
+
+void warn(io::StudySummary& summary, const rotor::Options& rotor, const std::string& bars) {
+  summary.warnings.push_back(
+      fmt::format("{} leave out what the {} elements of the shaft (rotor.element {}) are off by; `element_convergence` "
+                  "and `modes` show it",
+                  bars, rotor.segments.size(), deck::name_of(rotor.element)));
+}
+
+}  // namespace
+
+void warn_curve_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine,
+                                   const LayoutOptions& layout) {
+  if (matters(machine, layout)) warn(summary, machine.rotor, "bars of the curve");
+}
+
 void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout) {
-  if (!has_shaft_mesh(machine, layout) || machine.rotor.reduction.type == rotor::Reduction::Type::guyan) return;
+  if (!matters(machine, layout)) return;
   const auto lacks = [](const io::Bifurcation& b) { return !b.more.contains("uncertainty_shaft_mesh"); };
   if (std::ranges::none_of(summary.bifurcations, lacks)) return;
-  summary.warnings.push_back(fmt::format(
-      "bars without 'uncertainty_shaft_mesh' leave out what the {} elements of the shaft (rotor.element {}) "
-      "are off by; `element_convergence` and `modes` show it",
-      machine.rotor.segments.size(), deck::name_of(machine.rotor.element)));
+  warn(summary, machine.rotor, "bars without 'uncertainty_shaft_mesh'");
 }
 
 system::Train with_cut_shaft(system::Train train, int parts) {

@@ -25,6 +25,9 @@ inline const FilmMesh cut_shaft_mesh{Axis::shaft, {1, 1}, 0.5};
 /// Warns of bifurcations in the summary whose bars leave out the mesh of the shaft. None of a shaft with static
 /// reduction: elements at rest are exact, so that shafts of shorter elements have the same reduced matrices.
 void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout);
+/// Warns likewise of the bars of a curve, none of which knows the mesh of the shaft.
+void warn_curve_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine,
+                                   const LayoutOptions& layout);
 
 /// The train with every beam of its shaft cut into `parts` equal ones; what stands at nodes stays in its place.
 [[nodiscard]] system::Train with_cut_shaft(system::Train train, int parts);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
@@ -20,6 +21,7 @@
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/linear.hpp"
+#include "whirl/rotor/divide.hpp"
 
 namespace whirl::study {
 namespace {
@@ -55,15 +57,15 @@ struct Way {
 
 class Transfers {
 public:
-  /// `cells`: of the films over those of the deck.
   Transfers(const Context& context, const Layout& layout, const FrequencyResponseOptions& options,
-            const std::vector<TransferOutput>& outputs, const std::array<double, 2>& cells = {1, 1})
-      : options_(options),
-        outputs_(outputs),
-        train_(with_film_mesh(with_joints(system::train_of(context.machine), options), cells)),
+            std::vector<TransferOutput> outputs, const FilmMesh& mesh = {})
+      : options_(moved(options, context.machine.rotor, parts_of(mesh))),
+        outputs_(moved(std::move(outputs), context.machine.rotor, parts_of(mesh))),
+        train_(with_cut_shaft(with_film_mesh(with_joints(system::train_of(context.machine), options), mesh.factor),
+                              parts_of(mesh))),
         system_(layout.space, train_, options.speed.value),
         walker_(system_),
-        matrix_(system_, options.inputs, outputs) {}
+        matrix_(system_, options_.inputs, outputs_) {}
 
   std::vector<Complex> at(const Way& way, double omega) {
     linearise();
@@ -111,6 +113,17 @@ private:
         films[b].damping = {{{c.c_xx, c.c_xy}, {c.c_yx, c.c_yy}}};
       }
   }
+  // Points of a shaft whose segments are cut.
+  template <class Point>
+  static std::vector<Point> moved(std::vector<Point> points, const rotor::Options& whole, int parts) {
+    for (Point& p : points)
+      if (p.node) p.node = rotor::node_after(whole, *p.node, parts);
+    return points;
+  }
+  static FrequencyResponseOptions moved(FrequencyResponseOptions options, const rotor::Options& whole, int parts) {
+    options.inputs = moved(std::move(options.inputs), whole, parts);
+    return options;
+  }
   // Forces may make the shear force jump, where an element asks for the place.
   static system::Train with_joints(system::Train train, const FrequencyResponseOptions& options) {
     for (const TransferInput& input : options.inputs)
@@ -118,8 +131,8 @@ private:
     return train;
   }
 
-  const FrequencyResponseOptions& options_;
-  const std::vector<TransferOutput>& outputs_;
+  FrequencyResponseOptions options_;
+  std::vector<TransferOutput> outputs_;
   system::Train train_;
   system::RotorSystem system_;
   Walker walker_;
@@ -158,7 +171,7 @@ std::size_t largest_of(const Matrices& found, std::size_t response) {
   return most;
 }
 
-// Error bars of complex responses at some of the frequencies, in the units of these; NaN: unknown. Empty without film
+// Error bars of complex responses at some of the frequencies, in the units of these; NaN: unknown. Empty without
 // meshes.
 struct TransferBars {
   std::vector<std::size_t> at;             // of the frequencies, ascending
@@ -168,13 +181,14 @@ struct TransferBars {
   }
 };
 
-// The machine with its films as they are at a few frequencies, and where each response is largest, on other film
-// meshes. One task is one mesh.
+// The machine with its films as they are at a few frequencies, and where each response is largest, on other meshes of
+// the films and of the shaft. One task is one mesh.
 TransferBars bars_of(const Context& context, const Layout& layout, Pieces& pieces,
                      const FrequencyResponseOptions& options, const std::vector<TransferOutput>& outputs,
                      const std::vector<double>& frequencies, const Matrices& found) {
   TransferBars out;
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  if (has_shaft_mesh(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
   if (meshes.empty()) return out;
   const std::size_t responses = found.front().size();
   const std::vector<std::size_t> few = few_of(frequencies.size());
@@ -184,7 +198,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   const auto compute = [&](std::size_t i) {
     std::vector<double> all;
     const bool answered = has_answer([&] {
-      Transfers there(context, layout, options, outputs, meshes[i].factor);
+      Transfers there(context, layout, options, outputs, meshes[i]);
       for (const std::size_t k : out.at) append(all, there.at({"machine"}, frequencies[k]));
     });
     if (!answered) all.clear();
@@ -192,7 +206,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   };
   // Each mesh starts anew and leaves nothing behind.
   const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
-  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "film mesh", none);
+  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "other mesh", none);
   std::vector<double> here;
   for (const std::size_t k : out.at) append(here, found[k]);
   Bars bars(here, law_of(context.machine, context.layout));
@@ -300,7 +314,7 @@ StudyResult FrequencyResponse::run(Context& context) {
           if (std::isnan(worst)) break;
         }
         summary.set(name + ".relative_error", worst, "1");
-        group.child("bars").put(name, bars.error[e], of, "estimated error of the complex response from the film mesh");
+        group.child("bars").put(name, bars.error[e], of, "estimated error of the complex response from the meshes");
       }
     }
   for (std::size_t w = 1; w < ways.size(); ++w) {

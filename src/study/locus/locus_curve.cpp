@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "study/bars/mesh_wave.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "study/locus/locus_follower.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -54,6 +55,7 @@ void LocusFollower::put_curve(const std::vector<Row>& rows, const std::vector<Ro
         "there already (others_unstable)",
         marked, rows.size(), low, high, second));
   waves.warn(summary, second);
+  warn_curve_without_shaft_mesh(summary, context_.machine, context_.layout);
   for (const io::Table::Column& column : table.columns())
     summary.curve.push_back({column.name, column.unit, table.column(column.name)});
   table.write(context_.results.group().child("locus"));
