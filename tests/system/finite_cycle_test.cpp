@@ -21,7 +21,7 @@ constexpr double speed_scale = test::finite_speed_scale, speed = 4.5 * speed_sca
 
 // By Newton-Picard, which must be the cycle and the multipliers of dense shooting, of these those that are larger than
 // `least`.
-solve::Cycle compared(const system::Train& train, int steps = 16, double least = 0) {
+solve::Cycle compared(const system::Train& train, int steps = 10, double least = 0) {
   solve::NewtonOptions newton;
   newton.tolerance = 1e-10;
   system::RotorSystem s(MPI_COMM_WORLD, train, speed), alone(PETSC_COMM_SELF, train, speed);
