@@ -9,7 +9,7 @@ endif()
 add_library(whirl_flags INTERFACE)
 target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast -Werror)
 # A local name may hide one of another file that is compiled with it.
-if(WHIRL_UNITY)
+if(WHIRL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(whirl_flags INTERFACE -Wshadow=local)
 else()
   target_compile_options(whirl_flags INTERFACE -Wshadow)

@@ -1,5 +1,6 @@
 # Files of a room compiled twelve at a time: their headers are read, and the templates of Eigen instantiated, once for all of them.
 # A whole build takes half the time; the change of one file takes more. To work on a room, configure with -DWHIRL_UNITY=OFF.
+# That shows also whether a file lacks an #include, and names that hide names of its own file.
 # CMake's own UNITY_BUILD writes absolute paths, with which ccache finds nothing in another clone.
 set(several_as_one OFF)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release")
@@ -17,6 +18,7 @@ function(whirl_batches variable name)
   endif()
   list(SORT files)
   set(batch 0)
+  set(batches)
   while(files)
     list(SUBLIST files 0 12 together)
     list(REMOVE_ITEM files ${together})

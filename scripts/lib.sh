@@ -20,8 +20,10 @@ die() {
 find_python() {
   local candidate
   for candidate in ${WHIRL_PYTHON:-} /usr/bin/python3 python3; do
-    # Whether they are there; to import them takes longer than to draw a picture.
-    if "$candidate" -c 'import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ("h5py", "numpy", "matplotlib"))))' 2>/dev/null; then
+    # Whether they are there, not in this folder; to import them takes longer than to draw a picture.
+    if "$candidate" -c 'import sys; sys.path.remove("")
+from importlib.util import find_spec
+sys.exit(any(getattr(find_spec(name), "origin", None) is None for name in ("h5py", "numpy", "matplotlib")))' 2>/dev/null; then
       printf '%s\n' "$candidate"
       return
     fi

@@ -144,13 +144,14 @@ def write(figure, stem):
     The layout is computed once, for all formats. Figure.savefig would compute it for each, and walk through all artists once more."""
     files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
     figure.set_facecolor("white")
-    with remembered():
+    with remembered() as forget:
         figure.set_dpi(plt.rcParams["savefig.dpi"])
         figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")
         for path in files:
             figure.set_dpi(plt.rcParams["savefig.dpi"])  # an SVG leaves its own
             PRINTED[path.suffix](figure, path)
+            forget()
     return files
 
 
@@ -161,6 +162,7 @@ def print_png(figure, path):
 
 
 def print_svg(figure, path):
+    figure.set_dpi(90)  # of what is no line: the coloured fields
     text = io.StringIO()
     FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
     path.write_text(shorter(text.getvalue()), encoding="utf-8")

@@ -1,4 +1,6 @@
-"""Ticks of finished figures, computed once: for a picture matplotlib asks each axis up to ten times for them and for the extents of their labels."""
+"""Ticks of finished figures, computed once.
+
+For a picture matplotlib asks each axis up to ten times for them and for the extents of their labels."""
 import contextlib
 
 from matplotlib.axis import Axis, XAxis, YAxis
@@ -9,7 +11,7 @@ ASKED = ("_update_ticks", "_get_ticklabel_bboxes")
 @contextlib.contextmanager
 def remembered():
     """Within, an axis has the ticks and extents of the last time as long as its limits, its place and the resolution are the same.
-    Only for figures of which nothing else changes."""
+    Only for figures of which nothing else changes. Gives a function that forgets them, for a format that measures text in its own way."""
     real = {name: getattr(Axis, name) for name in ASKED if hasattr(Axis, name)}
     known = {}
 
@@ -26,7 +28,7 @@ def remembered():
     try:
         for name in real:
             setattr(Axis, name, once(name))
-        yield
+        yield known.clear
     finally:
         for name, method in real.items():
             setattr(Axis, name, method)

@@ -154,6 +154,8 @@ CLOSE = [*SHORT, G25 + "range={from: 4050 rpm, to: 4130 rpm}", G25 + "at=[]", G6
 def doubled(h, overrides=CLOSE):
     """A located bifurcation moves by less than its reported uncertainty on a doubled time mesh and at a higher degree."""
     base = h.run("unbalance.yaml", "base", overrides)
+    for grade, kind in (("G2.5", "flip"), ("G6.3", "neimark_sacker")):
+        h.true(f"{grade}: {kind}", kind in [b["type"] for b in base[grade]["bifurcations"]], str(base[grade]["bifurcations"]))
     finer = {"120 intervals": [G25 + "intervals=120", G63 + "intervals=120"],
              "degree 3": [G25 + "degree=3", G63 + "degree=3"]}
     for what, more in finer.items():

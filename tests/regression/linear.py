@@ -126,9 +126,12 @@ def response(h):
     h.true("    is another one", np.abs(matrix("over speed") / matrix("few") - 1).max() > 0.1)
     h.close("    its modes [rad/s]", max(abs(p["imag"] - q["imag"]) for p, q in zip(a, b)), 0, 1e-6 * b[-1]["imag"])
     # Far below all resonances: the springs, and the shaft's own compliance.
-    stiff = ["studies.1.frequency_response={name: disc, speed: 0 rad/s, range: {from: 0.1 rad/s, to: 0.2 rad/s}, points: 2, inputs: [{bearing: left, direction: x}]}",
+    stiff = ["studies.1.frequency_response={name: disc, speed: 0 rad/s, range: {from: 0.1 rad/s, to: 0.2 rad/s}, points: 2, inputs: [{bearing: left, direction: x}], "
+             "outputs: [{bearing: left, direction: x}, {bearing: left, direction: y}]}",
              "bearings.*.film.stiffness=1e3 N/m"]
     s = h.run(deck, "soft", stiff, launcher=[], bars=True)["disc"]
+    across = [name for name in s["values"] if name.startswith("bearing.left.y") and name.endswith("relative_error")]
+    h.true("what does not answer at all has no relative error", value(s, "bearing.left.x.from.bearing.left.x.relative_error") < 1e-6 and not across, str(across))
     bar = s["values"]["bearing.left.x.from.bearing.left.x.largest"]["uncertainty"]
     h.true("the mesh of the shaft hardly matters to it", 0 < bar < 1e-9, str(bar))
     h.close("a soft spring at rest [m/N]", value(s, "bearing.left.x.from.bearing.left.x.largest"), 1e-3, 1e-6)

@@ -279,6 +279,30 @@ TEST(ErrorBar, IsUnknownWhereNoneIsWanted) {
   EXPECT_TRUE(std::isnan(error_bar(1, {}, law_of(machine, layout)).total()));
 }
 
+// Bars of cycles and curves leave the shaft's mesh out, and say so where it matters.
+TEST(ErrorBar, SaysWhatLeavesTheShaftOut) {
+  system::Machine machine;
+  machine.rotor.type = rotor::Options::Type::shaft;
+  machine.rotor.segments.resize(2);
+  const auto warnings = [&](bool with_bar, bool curve) {
+    io::StudySummary summary;
+    summary.bifurcations.resize(1);
+    if (with_bar) summary.bifurcations[0].more["uncertainty_shaft_mesh"] = 1;
+    if (curve)
+      warn_curve_without_shaft_mesh(summary, machine, LayoutOptions{});
+    else
+      warn_without_shaft_mesh(summary, machine, LayoutOptions{});
+    return summary.warnings;
+  };
+  EXPECT_EQ(warnings(false, false).size(), 1);
+  EXPECT_TRUE(warnings(true, false).empty());
+  ASSERT_EQ(warnings(true, true).size(), 1);
+  EXPECT_EQ(warnings(true, true)[0].find("bars of the curve leave out what the 2 elements of the shaft"), 0);
+  machine.rotor.reduction.type = rotor::Reduction::Type::guyan;
+  EXPECT_TRUE(warnings(false, false).empty());
+  EXPECT_TRUE(warnings(false, true).empty());
+}
+
 // The power loss of a bearing of the train on 17 x 40 cells: on 9 and 34 it seems to be of second order, and a bar of
 // these two was 165 W long. It is of first order: 54028 W on 136 cells.
 TEST(ErrorBar, OfAPowerLossOnFewCellsCovers) {

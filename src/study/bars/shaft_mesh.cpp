@@ -20,12 +20,11 @@ bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout)
          machine.rotor.type == rotor::Options::Type::shaft;
 }
 
-namespace {
-
-// Shafts of shorter elements have other matrices.
-bool matters(const system::Machine& machine, const LayoutOptions& layout) {
+bool shaft_mesh_matters(const system::Machine& machine, const LayoutOptions& layout) {
   return has_shaft_mesh(machine, layout) && machine.rotor.reduction.type != rotor::Reduction::Type::guyan;
 }
+
+namespace {
 
 void warn(io::StudySummary& summary, const rotor::Options& rotor, const std::string& bars) {
   summary.warnings.push_back(
@@ -38,11 +37,11 @@ void warn(io::StudySummary& summary, const rotor::Options& rotor, const std::str
 
 void warn_curve_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine,
                                    const LayoutOptions& layout) {
-  if (matters(machine, layout)) warn(summary, machine.rotor, "bars of the curve");
+  if (shaft_mesh_matters(machine, layout)) warn(summary, machine.rotor, "bars of the curve");
 }
 
 void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout) {
-  if (!matters(machine, layout)) return;
+  if (!shaft_mesh_matters(machine, layout)) return;
   const auto lacks = [](const io::Bifurcation& b) { return !b.more.contains("uncertainty_shaft_mesh"); };
   if (std::ranges::none_of(summary.bifurcations, lacks)) return;
   warn(summary, machine.rotor, "bars without 'uncertainty_shaft_mesh'");

@@ -15,6 +15,10 @@ namespace whirl::study {
 /// Whether bars are wanted, and the machine has a shaft of beams.
 [[nodiscard]] bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout);
 
+/// Whether shorter elements have other matrices: elements at rest are exact, so that a shaft with static reduction has
+/// the same reduced ones.
+[[nodiscard]] bool shaft_mesh_matters(const system::Machine& machine, const LayoutOptions& layout);
+
 /// The mesh of with_cut_shaft(train, 2) among those that bars stand on.
 inline const FilmMesh cut_shaft_mesh{Axis::shaft, {1, 1}, 0.5};
 /// Into how many parts a mesh cuts the segments.
@@ -22,8 +26,7 @@ inline const FilmMesh cut_shaft_mesh{Axis::shaft, {1, 1}, 0.5};
   return mesh.axis == Axis::shaft ? 2 : 1;
 }
 
-/// Warns of bifurcations in the summary whose bars leave out the mesh of the shaft. None of a shaft with static
-/// reduction: elements at rest are exact, so that shafts of shorter elements have the same reduced matrices.
+/// Warns of bifurcations in the summary whose bars leave out the mesh of the shaft, where it matters.
 void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout);
 /// Warns likewise of the bars of a curve, none of which knows the mesh of the shaft.
 void warn_curve_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -171,6 +172,8 @@ std::size_t largest_of(const Matrices& found, std::size_t response) {
   return most;
 }
 
+constexpr double rounding = 1e-12;  // of the largest answer at a frequency: what does not answer at all
+
 // Error bars of complex responses at some of the frequencies, in the units of these; NaN: unknown. Empty without
 // meshes.
 struct TransferBars {
@@ -188,7 +191,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
                      const std::vector<double>& frequencies, const Matrices& found) {
   TransferBars out;
   std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
-  if (has_shaft_mesh(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
+  if (shaft_mesh_matters(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
   if (meshes.empty()) return out;
   const std::size_t responses = found.front().size();
   const std::vector<std::size_t> few = few_of(frequencies.size());
@@ -284,6 +287,13 @@ StudyResult FrequencyResponse::run(Context& context) {
   }
   for (const Way& way : ways) response.child(way.name).set("frequency", way.frequency);
   const std::size_t inputs = options.inputs.size();
+  const auto largest_in = [&](const std::vector<Complex>& matrix, const std::string& of) {
+    double largest = 0;
+    for (std::size_t e = 0; e < matrix.size(); ++e)
+      if (unit_of(outputs[e / inputs], options.inputs[e % inputs]) == of)
+        largest = std::max(largest, std::abs(matrix[e]));
+    return largest;
+  };
   for (std::size_t o = 0; o < outputs.size(); ++o)
     for (std::size_t i = 0; i < inputs; ++i) {
       const std::string name = label(outputs[o]) + ".from." + label(options.inputs[i]),
@@ -307,13 +317,14 @@ StudyResult FrequencyResponse::run(Context& context) {
         summary.set(name + ".largest", column[2][most], of, bar);
         summary.set(name + ".largest_at", deck::from_si(frequencies[most], unit), unit);
         if (bars.at.empty()) continue;
-        double worst = 0;
+        std::optional<double> worst;
         for (std::size_t k = 0; k < bars.at.size(); ++k) {
+          if (column[2][bars.at[k]] <= rounding * largest_in(all[0][bars.at[k]], of)) continue;  // nothing answers
           const double part = bars.error[e][k] / column[2][bars.at[k]];
-          if (!(part <= worst)) worst = part;  // unknown stays unknown
-          if (std::isnan(worst)) break;
+          if (!worst || !(part <= *worst)) worst = part;  // unknown stays unknown
+          if (std::isnan(*worst)) break;
         }
-        summary.set(name + ".relative_error", worst, "1");
+        if (worst) summary.set(name + ".relative_error", *worst, "1");
         group.child("bars").put(name, bars.error[e], of, "estimated error of the complex response from the meshes");
       }
     }
