@@ -125,7 +125,7 @@ for k, moment in enumerate(moments):
         # The file written last may have taken longer than those that its interval was chosen from.
         allowed.append(work + 2 * waited + noise * seconds)
         if kills == 0:  # a small run: one that began anew would lose all that was done
-            allowed[-1] = min(allowed[-1], share / 2 * seconds)
+            allowed[-1] = min(allowed[-1], (share / 2 + noise) * seconds)
         print(f"killed at {share:.0%}: {lost[-1]:.2f} s lost, {waited:.2f} s between files", flush=True)
     for what, d, within in same_results(h.work / "undisturbed", out):
         h.close(f"kill {k} at {share:.0%}: {what}", d, 0, within)
