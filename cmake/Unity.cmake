@@ -1,5 +1,5 @@
 # Files of a room compiled twelve at a time: their headers are read, and the templates of Eigen instantiated, once for all of them.
-# A whole build takes half the time; the change of one file takes more. To work on a room, configure with -DWHIRL_UNITY=OFF.
+# A whole build takes three fifths of the time; the change of one file takes more. To work on a room, configure with -DWHIRL_UNITY=OFF.
 # That shows also whether a file lacks an #include, and names that hide names of its own file.
 # CMake's own UNITY_BUILD writes absolute paths, with which ccache finds nothing in another clone.
 set(several_as_one OFF)

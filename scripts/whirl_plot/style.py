@@ -187,7 +187,7 @@ def few_colours(pixels):
     """Opaque RGBA [row][column] as an image of 256 colours: the 128 of the largest areas as they are; then, one by one, the colour that is
     farthest from all of these, which keeps the hue of thin lines and small marks."""
     codes = np.ascontiguousarray(pixels).view(np.uint32).ravel()
-    # Most pixels are those of their left neighbour: only runs of equal ones are sorted.
+    # Most pixels have the colour of the one to their left, so runs of equal pixels are sorted, not pixels.
     starts = np.flatnonzero(np.concatenate([[True], codes[1:] != codes[:-1]]))
     lengths = np.diff(starts, append=len(codes))
     values, place = np.unique(codes[starts], return_inverse=True)

@@ -18,7 +18,7 @@ struct Quantity {
   std::string unit = {};
   std::map<std::string, double> more = {};  ///< "uncertainty" and its parts, in the same unit
 
-  /// Half the error bar, `unit`; 0 if none is known.
+  /// "uncertainty", in `unit`: the value is within this much on either side; 0 if it is not known.
   [[nodiscard]] double bar() const;
 };
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "solve/newton/thin.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -16,19 +17,6 @@ using Eigen::VectorXd;
 VectorXd to_eigen(Vec v) {
   const core::ReadArray a(v);
   return Map<const VectorXd>(a.data(), a.size());
-}
-
-MatrixXd to_dense(Mat m, Index n) {
-  MatrixXd out = MatrixXd::Zero(n, n);
-  for (PetscInt i = 0; i < n; ++i) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(m, i, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k) out(i, columns[k]) = values[k];
-    check(MatRestoreRow(m, i, &count, &columns, &values));
-  }
-  return out;
 }
 
 // out = diag(rows) block diag(columns)
@@ -259,7 +247,7 @@ void ScaledPoint::linearise(double angle, const VectorXd& x, const VectorXd& xdo
   }
   put(x, xdot);
   const auto scaled = [&]() -> MatrixXd {
-    return residual_scale_.cwiseInverse().asDiagonal() * to_dense(matrix_.get(), size()) * state_scale_.asDiagonal();
+    return residual_scale_.cwiseInverse().asDiagonal() * dense(matrix_.get()) * state_scale_.asDiagonal();
   };
   system_.jacobian(angle, x_.get(), xdot_.get(), 1, 0, matrix_.get());
   jx = scaled();

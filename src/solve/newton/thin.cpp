@@ -68,4 +68,14 @@ Eigen::SparseMatrix<double> gather_entries(MPI_Comm comm, Eigen::Index n, const 
   return out;
 }
 
+Eigen::MatrixXd dense(Mat m) {
+  PetscInt rows = 0, width = 0;
+  core::check(MatGetSize(m, &rows, &width));
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, width);
+  for_rows(m, [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
+    for (PetscInt k = 0; k < count; ++k) out(i, columns[k]) = values[k];
+  });
+  return out;
+}
+
 }  // namespace whirl::solve

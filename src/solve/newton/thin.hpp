@@ -24,6 +24,9 @@ void for_rows(Mat m, F&& f) {
   }
 }
 
+/// The whole matrix where one rank has it.
+[[nodiscard]] Eigen::MatrixXd dense(Mat m);
+
 /// The sum of entries (row, column, value) that ranks have [n x n], whole on every rank. Collective.
 [[nodiscard]] Eigen::SparseMatrix<double> gather_entries(MPI_Comm comm, Eigen::Index n,
                                                          const std::vector<double>& mine);

@@ -4,6 +4,7 @@
 
 #include "solve/newton/local_part.hpp"
 #include "solve/newton/port_krylov.hpp"
+#include "solve/newton/thin.hpp"
 
 namespace whirl::solve {
 
@@ -50,21 +51,6 @@ bool find_entries(MPI_Comm comm, Mat matrix, VectorXd& inverse, Eigen::VectorX<P
 
 // Up to this many states the making of a solver of PETSc takes longer than all of the arithmetic.
 constexpr PetscInt small = 64;
-
-MatrixXd dense(Mat matrix) {
-  PetscInt n = 0;
-  check(MatGetSize(matrix, &n, nullptr));
-  MatrixXd out = MatrixXd::Zero(n, n);
-  for (PetscInt i = 0; i < n; ++i) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(matrix, i, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k) out(i, columns[k]) = values[k];
-    check(MatRestoreRow(matrix, i, &count, &columns, &values));
-  }
-  return out;
-}
 
 // Solves to rounding, so that products are exact: factorised on every rank, with one step of refinement for what LU
 // without pivoting loses. No reductions, which cost more than the arithmetic of a machine without parts.
