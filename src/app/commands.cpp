@@ -41,6 +41,16 @@ std::string changes_text(const std::vector<deck::Change>& changes) {
   return core::printable(text);
 }
 
+// What is unusual about a deck, a line each.
+std::string warnings_text(const study::Deck& deck) {
+  const std::vector<std::string> warnings = study::warnings(deck);
+  constexpr std::size_t most = 20;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += fmt::format("  warning: {}\n", warnings[i]);
+  if (warnings.size() > most) text += fmt::format("  and {} more warnings\n", warnings.size() - most);
+  return text;
+}
+
 // An InputError that does not depend on the rank is one that all ranks have.
 [[noreturn]] void refuse(const std::string& text) {
   core::InputError e(text);
@@ -76,8 +86,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
     if (opens_with_service && !answer.empty()) answers += fmt::format("{}:\n{}", s.name, answer);
   };
   std::string text = changes_text(deck.changes);
-  for (const std::string& line : study::unusual(deck)) text += fmt::format("warning: {}\n", line);
-  print(text);
+  print(text + warnings_text(deck));
   text.clear();
   study::stop_after_checkpoints(request.stop_after_checkpoint);
   std::vector<std::string> undelivered;
@@ -128,11 +137,7 @@ std::string checked(MPI_Comm comm, const DeckRequest& request) {
                         bytes < notable ? "" : fmt::format(", about {} of memory", deck::write_memory(bytes)));
   }
   text += changes_text(deck.changes);
-  const std::vector<std::string> warnings = study::warnings(deck);
-  constexpr std::size_t most = 20;
-  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += fmt::format("  warning: {}\n", warnings[i]);
-  if (warnings.size() > most) text += fmt::format("  and {} more warnings\n", warnings.size() - most);
-  return text;
+  return text + warnings_text(deck);
 }
 
 }  // namespace

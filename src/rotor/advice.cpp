@@ -1,16 +1,49 @@
 #include "whirl/rotor/advice.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
 
+namespace {
+
+// Segments whose ratio lies on one side of what is advised.
+struct Outside {
+  std::vector<std::size_t> segments;  // from one
+  double lowest = std::numeric_limits<double>::infinity(), highest = 0;
+
+  void add(std::size_t segment, double ratio) {
+    segments.push_back(segment);
+    lowest = std::min(lowest, ratio);
+    highest = std::max(highest, ratio);
+  }
+  // "1 to 6", "8"
+  [[nodiscard]] std::vector<std::string> stretches() const {
+    std::vector<std::string> out;
+    for (std::size_t from = 0, k = 0; k < segments.size(); ++k) {
+      if (k + 1 < segments.size() && segments[k + 1] == segments[k] + 1) continue;
+      out.push_back(from == k ? fmt::format("{}", segments[k]) : fmt::format("{} to {}", segments[from], segments[k]));
+      from = k + 1;
+    }
+    return out;
+  }
+  [[nodiscard]] std::string ratios() const {
+    const std::string low = fmt::format("{:.3g}", lowest), high = fmt::format("{:.3g}", highest);
+    return low == high ? low : low + " to " + high;
+  }
+};
+
+}  // namespace
+
 std::vector<std::string> advice(const Options& rotor) {
   constexpr double least = 0.05, most = 0.8, step = 4;
   std::vector<std::string> lines;
+  Outside below, above;
   const auto ratio = [](const Segment& s) {
     return s.length /
            (s.outer_stiffness_diameter > 0 ? s.outer_stiffness_diameter : section_at(s, 0.5).outer_mass_diameter);
@@ -18,9 +51,8 @@ std::vector<std::string> advice(const Options& rotor) {
   for (std::size_t i = 0; i < rotor.segments.size(); ++i) {
     const double r = ratio(rotor.segments[i]);
     const std::string path = fmt::format("rotor.segments.{}", i + 1);
-    if (r < least || r > most)
-      lines.push_back(
-          fmt::format("{}: length over stiffness diameter is {:.3g}, advised are {} to {}", path, r, least, most));
+    if (r < least) below.add(i + 1, r);
+    if (r > most) above.add(i + 1, r);
     if (i == 0) continue;
     const double before = ratio(rotor.segments[i - 1]), factor = std::max(r / before, before / r);
     // A hundredth of a millionth beyond the limit is rounding of the table.
@@ -31,6 +63,10 @@ std::vector<std::string> advice(const Options& rotor) {
                       "advised are at most {:.0f}",
                       path, r, before, factor, step));
   }
+  for (const Outside* all : {&above, &below})
+    if (!all->segments.empty())
+      lines.push_back(fmt::format("rotor.segments.{}: length over stiffness diameter is {}, advised are {} to {}",
+                                  fmt::join(all->stretches(), ", "), all->ratios(), least, most));
   return lines;
 }
 

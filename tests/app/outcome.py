@@ -84,6 +84,13 @@ text, s = run(source / "tests" / "app" / "friswell_591.yaml", "criticals", "--se
 told, opens, table = (text.find(words) for words in ("m: completed", "at the service speed, 2600 rpm:", "    critical "))
 if not 0 < told < opens < table or not re.search(r"critical speed above: 2756\.\S* \+- \S+ rpm, 6\.0 % from the service speed", text):
     failures.append("the service speed opens what was found:\n" + text)
+# A run begins with what `check` says about the deck.
+slim = ["--set", "rotor.segments.3.length=2 m", "--set", "studies=[{modes: {speeds: [500 rpm], count: 2, supports: films}}]"]
+checked = subprocess.run([program, "check", str(source / "tests" / "app" / "friswell_591.yaml"), *slim], capture_output=True, text=True, timeout=300).stdout
+warned = [line for line in checked.split("\n") if line.startswith("  warning: ")]
+ran = [line for line in run(source / "tests" / "app" / "friswell_591.yaml", "slim", *slim)[0].split("\n") if line.startswith("  warning: ")]
+if not any("rotor.segments.3: length over stiffness diameter" in line for line in warned) or ran != warned:
+    failures.append(f"warnings of a run {ran} and of a check {warned}")
 m = s["m"]
 row(text, "1", [m[f"critical.1.{k}"] for k in ("speed", "mode", "log_decrement", "amplification_factor")]
     + [100 * m["critical.1.separation_margin"], 100 * m["critical.1.required_margin"]])

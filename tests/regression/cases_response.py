@@ -102,7 +102,7 @@ def flushed(h):
     studies = ("studies=[{static: {name: quick, speed: 4000 rpm}}, {unbalance_response: {name: long, unbalance: [u], nodes: [3], points: 20000, "
                "range: {from: 400 rpm, to: 4000 rpm}}}]")
     process = subprocess.Popen(h.command(h.source / "tests/cases/always_unstable.yaml", h.work / "flushed", [studies]), stdout=subprocess.PIPE, text=True)
-    lines = [process.stdout.readline() for _ in range(2)]
+    lines = [process.stdout.readline() for _ in range(3)]
     h.true("the first study is told before the second one ends", any(l.startswith("quick: completed") for l in lines) and process.poll() is None, str(lines))
     kill(process)
 
