@@ -284,18 +284,24 @@ TEST(ErrorBar, SaysWhatLeavesTheShaftOut) {
   system::Machine machine;
   machine.rotor.type = rotor::Options::Type::shaft;
   machine.rotor.segments.resize(2);
-  const auto warnings = [&](bool with_bar, bool curve) {
+  const auto warnings = [&](bool with_bar, bool curve, double value = 100) {
     io::StudySummary summary;
     summary.bifurcations.resize(1);
+    summary.bifurcations[0].value = value;
     if (with_bar) summary.bifurcations[0].more["uncertainty_shaft_mesh"] = 1;
     if (curve)
       warn_curve_without_shaft_mesh(summary, machine, LayoutOptions{});
     else
-      warn_without_shaft_mesh(summary, machine, LayoutOptions{});
+      warn_of_shaft_mesh(summary, machine, LayoutOptions{});
     return summary.warnings;
   };
   EXPECT_EQ(warnings(false, false).size(), 1);
   EXPECT_TRUE(warnings(true, false).empty());
+  ASSERT_EQ(warnings(true, false, -40).size(), 1);
+  EXPECT_EQ(
+      warnings(true, false, -40)[0],
+      "the mesh of the shaft (2 elements, rotor.element timoshenko) leaves up to 2.5 % in these bifurcations: cut "
+      "the segments shorter");
   ASSERT_EQ(warnings(true, true).size(), 1);
   EXPECT_EQ(warnings(true, true)[0].find("bars of the curve leave out what the 2 elements of the shaft"), 0);
   machine.rotor.reduction.type = rotor::Reduction::Type::guyan;

@@ -1,8 +1,11 @@
 #include "study/bars/shaft_mesh.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "whirl/deck/codecs.hpp"
 #include "whirl/rotor/describe.hpp"
@@ -40,11 +43,28 @@ void warn_curve_without_shaft_mesh(io::StudySummary& summary, const system::Mach
   if (shaft_mesh_matters(machine, layout)) warn(summary, machine.rotor, "bars of the curve");
 }
 
-void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout) {
+void warn_of_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout) {
   if (!shaft_mesh_matters(machine, layout)) return;
+  double most = 0;
+  for (const io::Bifurcation& b : summary.bifurcations)
+    if (const auto error = b.more.find("uncertainty_shaft_mesh"); error != b.more.end() && b.value != 0)
+      most = std::max(most, error->second / std::abs(b.value));
+  warn_of_shaft_mesh(summary, machine.rotor, {{"these bifurcations", most, most_of_frequency}});
   const auto lacks = [](const io::Bifurcation& b) { return !b.more.contains("uncertainty_shaft_mesh"); };
   if (std::ranges::none_of(summary.bifurcations, lacks)) return;
   warn(summary, machine.rotor, "bars without 'uncertainty_shaft_mesh'");
+}
+
+void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<ShaftError>& errors) {
+  std::vector<std::string> words;
+  for (const ShaftError& e : errors)
+    if (e.part > e.most)
+      words.push_back(fmt::format(fmt::runtime(e.part < 0.1 ? "up to {:.2g} % in {}" : "up to {:.0f} % in {}"),
+                                  100 * e.part, e.what));
+  if (words.empty()) return;
+  summary.warnings.push_back(
+      fmt::format("the mesh of the shaft ({} elements, rotor.element {}) leaves {}: cut the segments shorter",
+                  rotor.segments.size(), deck::name_of(rotor.element), fmt::join(words, " and ")));
 }
 
 system::Train with_cut_shaft(system::Train train, int parts) {

@@ -1,6 +1,8 @@
 #pragma once
 // The mesh of the shaft beside the one in use: every segment cut into shorter elements.
 
+#include <vector>
+
 #include "study/bars/film_mesh.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/system/options.hpp"
@@ -26,11 +28,23 @@ inline const FilmMesh cut_shaft_mesh{Axis::shaft, {1, 1}, 0.5};
   return mesh.axis == Axis::shaft ? 2 : 1;
 }
 
-/// Warns of bifurcations in the summary whose bars leave out the mesh of the shaft, where it matters.
-void warn_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout);
+/// Warns of bifurcations in the summary whose bars leave out the mesh of the shaft, where it matters, and of those in
+/// which it leaves more than most_of_frequency.
+void warn_of_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout);
 /// Warns likewise of the bars of a curve, none of which knows the mesh of the shaft.
 void warn_curve_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine,
                                    const LayoutOptions& layout);
+
+/// What the mesh of the shaft may leave in numbers of one kind.
+struct ShaftError {
+  const char* what = "";  ///< "the frequencies of these modes"
+  double part = 0;        ///< the largest error, relative to its number
+  double most = 0;        ///< up to which nothing is said
+};
+/// Of a frequency or a speed, and of an amplitude, which moves by more where a resonance is near.
+inline constexpr double most_of_frequency = 0.01, most_of_amplitude = 0.05;
+/// Warns of those that are larger than is right, with the element and what to do, in one sentence.
+void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<ShaftError>& errors);
 
 /// The train with every beam of its shaft cut into `parts` equal ones; what stands at nodes stays in its place.
 [[nodiscard]] system::Train with_cut_shaft(system::Train train, int parts);

@@ -289,7 +289,7 @@ StudyResult CycleFollower::run() {
   waves.warn(results.summary(), unit_);
   doubt(verdict);
   conclude(results.summary(), verdict, kind(), unit_);
-  warn_without_shaft_mesh(results.summary(), context_.machine, context_.layout);
+  warn_of_shaft_mesh(results.summary(), context_.machine, context_.layout);
   if (OpenBores bores(context_.machine); !bores.empty()) {
     record_.for_samples(
         [&](std::size_t place, double x, double y, double parameter) { bores.see(place, x, y, parameter); });

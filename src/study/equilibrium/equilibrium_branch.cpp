@@ -325,7 +325,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     put_contact(
         results.summary(), end.parameter, unit, end.bracket, law_of(context.machine, context.layout),
         contacts_there(context, options, *system, spread.all(), end.parameter, scale, margins, continuation.newton));
-  warn_without_shaft_mesh(results.summary(), context.machine, context.layout);
+  warn_of_shaft_mesh(results.summary(), context.machine, context.layout);
   missed.warn(results.summary());
   waves.warn(results.summary(), unit);
   bores.warn(results.summary(), unit);

@@ -1,6 +1,7 @@
 #include "whirl/study/linear/frequency_response.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -29,6 +30,9 @@ namespace {
 
 using Complex = std::complex<double>;
 using Matrices = std::vector<std::vector<Complex>>;  // per frequency
+
+// What rounding leaves of a matrix, per frequency.
+using Roundings = std::vector<std::vector<double>>;
 
 void append(std::vector<double>& out, const std::vector<Complex>& matrix) {
   for (const Complex& g : matrix) out.insert(out.end(), {g.real(), g.imag()});
@@ -68,7 +72,7 @@ public:
         walker_(system_),
         matrix_(system_, options_.inputs, outputs_) {}
 
-  std::vector<Complex> at(const Way& way, double omega) {
+  Transfer at(const Way& way, double omega) {
     linearise();
     if (way.films == Way::Films::whole) return matrix_.at(omega);
     const double frequency = way.films == Way::Films::constant ? way.frequency : omega;
@@ -150,15 +154,17 @@ private:
 struct Difference {
   double relative = 0, frequency = 0;
 };
-Difference difference(const Matrices& whole, const Matrices& other, const std::vector<double>& frequencies) {
+Difference difference(const Matrices& whole, const Roundings& rounding, const Matrices& other,
+                      const std::vector<double>& frequencies) {
   Difference out;
   for (std::size_t k = 0; k < whole.size(); ++k) {
-    double apart = 0, size = 0;
+    double apart = 0, size = 0, nothing = 0;
     for (std::size_t e = 0; e < whole[k].size(); ++e) {
       apart += std::norm(other[k][e] - whole[k][e]);
       size += std::norm(whole[k][e]);
+      nothing += rounding[k][e] * rounding[k][e];
     }
-    const double relative = size > 0 ? std::sqrt(apart / size) : 0;
+    const double relative = size > nothing ? std::sqrt(apart / size) : 0;
     if (relative > out.relative) out = {relative, frequencies[k]};
   }
   return out;
@@ -172,13 +178,12 @@ std::size_t largest_of(const Matrices& found, std::size_t response) {
   return most;
 }
 
-constexpr double rounding = 1e-12;  // of the largest answer at a frequency: what does not answer at all
-
 // Error bars of complex responses at some of the frequencies, in the units of these; NaN: unknown. Empty without
 // meshes.
 struct TransferBars {
   std::vector<std::size_t> at;             // of the frequencies, ascending
   std::vector<std::vector<double>> error;  // [response][of these]
+  std::vector<std::vector<double>> shaft;  // likewise: what the mesh of the shaft has in them
   [[nodiscard]] double of(std::size_t response, std::size_t frequency) const {
     return error[response][static_cast<std::size_t>(std::find(at.begin(), at.end(), frequency) - at.begin())];
   }
@@ -202,7 +207,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
     std::vector<double> all;
     const bool answered = has_answer([&] {
       Transfers there(context, layout, options, outputs, meshes[i]);
-      for (const std::size_t k : out.at) append(all, there.at({"machine"}, frequencies[k]));
+      for (const std::size_t k : out.at) append(all, there.at({"machine"}, frequencies[k]).values);
     });
     if (!answered) all.clear();
     return all;
@@ -215,10 +220,13 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   Bars bars(here, law_of(context.machine, context.layout));
   for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
   out.error.resize(responses);
+  out.shaft.resize(responses);
   for (std::size_t k = 0; k < out.at.size(); ++k)
     for (std::size_t e = 0; e < responses; ++e) {
       const std::size_t real = 2 * (k * responses + e);
-      out.error[e].push_back(std::hypot(bars[real].total(), bars[real + 1].total()));
+      const Bar a = bars[real], b = bars[real + 1];
+      out.error[e].push_back(std::hypot(a.total(), b.total()));
+      out.shaft[e].push_back(std::hypot(a.shaft_mesh, b.shaft_mesh));
     }
   return out;
 }
@@ -250,10 +258,12 @@ StudyResult FrequencyResponse::run(Context& context) {
   Pieces pieces(results, context.resume);
   std::size_t ready = 0;
   std::vector<Matrices> all;
+  Roundings rounding;  // of the machine
   for (const Way& way : ways) {
     const auto compute = [&](std::size_t i) {
-      std::vector<double> flat;
-      for (const Complex& v : machine.at(way, frequencies[i])) flat.insert(flat.end(), {v.real(), v.imag()});
+      const Transfer found = machine.at(way, frequencies[i]);
+      std::vector<double> flat = found.rounding;
+      append(flat, found.values);
       results.progress(
           fmt::format("{}: {} frequencies on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
       return flat;
@@ -261,7 +271,9 @@ StudyResult FrequencyResponse::run(Context& context) {
     Matrices& found = all.emplace_back();
     for (const auto& flat : distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
       std::vector<Complex>& matrix = found.emplace_back();
-      for (std::size_t e = 0; e < flat.size(); e += 2) matrix.emplace_back(flat[e], flat[e + 1]);
+      const std::size_t n = flat.size() / 3;
+      for (std::size_t e = n; e < flat.size(); e += 2) matrix.emplace_back(flat[e], flat[e + 1]);
+      if (all.size() == 1) rounding.emplace_back(flat.begin(), flat.begin() + static_cast<std::ptrdiff_t>(n));
     }
   }
 
@@ -287,13 +299,9 @@ StudyResult FrequencyResponse::run(Context& context) {
   }
   for (const Way& way : ways) response.child(way.name).set("frequency", way.frequency);
   const std::size_t inputs = options.inputs.size();
-  const auto largest_in = [&](const std::vector<Complex>& matrix, const std::string& of) {
-    double largest = 0;
-    for (std::size_t e = 0; e < matrix.size(); ++e)
-      if (unit_of(outputs[e / inputs], options.inputs[e % inputs]) == of)
-        largest = std::max(largest, std::abs(matrix[e]));
-    return largest;
-  };
+  const auto answers = [&](std::size_t at, std::size_t e) { return std::abs(all[0][at][e]) > rounding[at][e]; };
+  std::vector<std::string> silent;
+  double most_by_shaft = 0;
   for (std::size_t o = 0; o < outputs.size(); ++o)
     for (std::size_t i = 0; i < inputs; ++i) {
       const std::string name = label(outputs[o]) + ".from." + label(options.inputs[i]),
@@ -316,11 +324,13 @@ StudyResult FrequencyResponse::run(Context& context) {
         if (!bars.at.empty()) bar["uncertainty"] = bars.of(e, most);
         summary.set(name + ".largest", column[2][most], of, bar);
         summary.set(name + ".largest_at", deck::from_si(frequencies[most], unit), unit);
+        if (!answers(most, e)) silent.push_back(name);
         if (bars.at.empty()) continue;
         std::optional<double> worst;
         for (std::size_t k = 0; k < bars.at.size(); ++k) {
-          if (column[2][bars.at[k]] <= rounding * largest_in(all[0][bars.at[k]], of)) continue;  // nothing answers
+          if (!answers(bars.at[k], e)) continue;
           const double part = bars.error[e][k] / column[2][bars.at[k]];
+          most_by_shaft = std::max(most_by_shaft, bars.shaft[e][k] / column[2][bars.at[k]]);
           if (!worst || !(part <= *worst)) worst = part;  // unknown stays unknown
           if (std::isnan(*worst)) break;
         }
@@ -329,10 +339,16 @@ StudyResult FrequencyResponse::run(Context& context) {
       }
     }
   for (std::size_t w = 1; w < ways.size(); ++w) {
-    const Difference apart = difference(all[0], all[w], frequencies);
+    const Difference apart = difference(all[0], rounding, all[w], frequencies);
     summary.set(ways[w].name + ".difference", apart.relative, "1");
     summary.set(ways[w].name + ".difference_at", deck::from_si(apart.frequency, unit), unit);
   }
+  if (!silent.empty())
+    summary.warnings.push_back(
+        fmt::format("no answer but rounding, below 1e-12 of the largest motion of the machine: {}. They are zero, and "
+                    "have no relative error",
+                    fmt::join(silent, ", ")));
+  warn_of_shaft_mesh(summary, context.machine.rotor, {{"these transfer functions", most_by_shaft, most_of_amplitude}});
   summary.points = static_cast<long>(frequencies.size());
   return results.finish("completed", true);
 }

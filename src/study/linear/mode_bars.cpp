@@ -21,7 +21,6 @@ namespace whirl::study {
 namespace {
 
 constexpr std::size_t most_speeds = 5;
-constexpr double most_by_shaft = 0.01;  // of a frequency, without a warning
 
 void append(std::vector<double>& out, std::complex<double> lambda) {
   out.insert(out.end(), {lambda.real(), lambda.imag(), spectral::log_decrement(lambda)});
@@ -114,12 +113,7 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
 void ModeBars::tell_shaft(io::StudySummary& summary, const rotor::Options& rotor) const {
   if (shaft_error_ == 0) return;
   summary.set("shaft_mesh.largest_error", shaft_error_, "1");
-  if (shaft_error_ > most_by_shaft)
-    summary.warnings.push_back(
-        fmt::format("the mesh of the shaft ({} elements, rotor.element {}) leaves up to {:.2g} % in the frequencies of "
-                    "these modes: "
-                    "cut the segments shorter",
-                    rotor.segments.size(), deck::name_of(rotor.element), 100 * shaft_error_));
+  warn_of_shaft_mesh(summary, rotor, {{"the frequencies of these modes", shaft_error_, most_of_frequency}});
 }
 
 std::array<double, 3> ModeBars::at(int id, double speed) const {

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/freedom.hpp"
@@ -30,6 +32,8 @@ std::string place(const Point& p) {
 bool is_slope(Along a) {
   return a == Along::slope_x || a == Along::slope_y;
 }
+
+constexpr double rounding = 1e-12;  // of the largest motion
 
 rotor::Freedom freedom_of(Along a) {
   return static_cast<rotor::Freedom>(a);
@@ -119,11 +123,11 @@ void TransferMatrix::linearise_with_loss(double omega) {
   solver_.linearise(x_.get());
 }
 
-std::vector<Complex> TransferMatrix::at(double omega) {
+Transfer TransferMatrix::at(double omega) {
   if (system_.train().rotor.loss_factor > 0) linearise_with_loss(omega);
   solver_.factorise(omega);
   const std::size_t inputs = loads_.size();
-  std::vector<Complex> out(outputs_.size() * inputs);
+  Transfer out{std::vector<Complex>(outputs_.size() * inputs), std::vector<double>(outputs_.size() * inputs)};
   for (std::size_t i = 0; i < inputs; ++i) {
     std::vector<double> amplitude;
     solver_.solve(loads_[i], amplitude);
@@ -141,6 +145,13 @@ std::vector<Complex> TransferMatrix::at(double omega) {
       const auto k = static_cast<std::size_t>(2 * q);
       return Complex(state[0][k], state[1][k]);
     };
+    std::array<double, 2> largest{};  // displacement, slope
+    for (std::size_t k = 0; k < shaft[0].size(); ++k) {
+      double& most = largest[rotor::is_slope(rotor::freedom_at(static_cast<int>(k)))];
+      most = std::max(most, std::hypot(shaft[0][k], shaft[1][k]));
+    }
+    for (int b = 0; b < system_.n_bearings(); ++b)
+      for (int d = 0; d < 2; ++d) largest[0] = std::max(largest[0], std::abs(coordinate(system_.journal(b, d))));
     for (std::size_t o = 0; o < outputs_.size(); ++o) {
       const TransferOutput& output = outputs_[o];
       Complex z;
@@ -152,10 +163,11 @@ std::vector<Complex> TransferMatrix::at(double omega) {
         z = coordinate(system_.journal(b, d));
         if (system_.pedestal(b, d) >= 0) z -= coordinate(system_.pedestal(b, d));
       }
-      const Complex rate(0, omega);
-      if (output.quantity == TransferOutput::Quantity::velocity) z *= rate;
-      if (output.quantity == TransferOutput::Quantity::acceleration) z *= rate * rate;
-      out[o * inputs + i] = z;
+      Complex rate = 1;
+      if (output.quantity == TransferOutput::Quantity::velocity) rate = {0, omega};
+      if (output.quantity == TransferOutput::Quantity::acceleration) rate = -omega * omega;
+      out.values[o * inputs + i] = z * rate;
+      out.rounding[o * inputs + i] = rounding * largest[is_slope(output.direction)] * std::abs(rate);
     }
   }
   return out;

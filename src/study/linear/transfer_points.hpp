@@ -19,6 +19,14 @@ namespace whirl::study {
 /// The displacement along an input.
 [[nodiscard]] TransferOutput output_of(const TransferInput& input);
 
+/// A transfer matrix at one frequency [output][input], all of an output behind each other.
+struct Transfer {
+  std::vector<std::complex<double>> values;
+  /// What rounding may leave of each: 1e-12 of the largest motion of its kind, a displacement or a slope, that the
+  /// input makes anywhere in the machine. A smaller value is no answer.
+  std::vector<double> rounding;
+};
+
 /// The transfer matrix of one machine from inputs to outputs about an equilibrium. All members are collective on the
 /// system's communicator.
 class TransferMatrix {
@@ -27,9 +35,8 @@ public:
                  const std::vector<TransferOutput>& outputs);
   /// Takes the derivatives at the equilibrium x and the system's speed.
   void linearise(Vec x);
-  /// G(i omega) [output][input], all of an output behind each other; the same on all ranks. Throws core::NotConverged
-  /// at an undamped resonance.
-  [[nodiscard]] std::vector<std::complex<double>> at(double omega);
+  /// G(i omega), the same on all ranks. Throws core::NotConverged at an undamped resonance.
+  [[nodiscard]] Transfer at(double omega);
 
 private:
   /// With what a loss factor of the rotor is at this frequency.

@@ -415,6 +415,16 @@ StudyResult UnbalanceResponse::run(Context& context) {
   put_films(group, summary, shown, curve, unit);
   put_stability(group, summary, curve, stable, operating_speed, unit);
   warn_of_amplification(summary);
+  const auto most_by_shaft = [&](const char* name) {
+    double most = 0;
+    for (const auto& [of, q] : summary.values)
+      if (const auto error = q.more.find("uncertainty_shaft_mesh"); error != q.more.end() && of.ends_with(name))
+        most = std::max(most, error->second / std::abs(q.value));
+    return most;
+  };
+  warn_of_shaft_mesh(summary, context.machine.rotor,
+                     {{"the speeds of these peaks", most_by_shaft(".speed"), most_of_frequency},
+                      {"their heights", most_by_shaft(".semi_major"), most_of_amplitude}});
   if (operating) put_operating_range(summary, *operating, unit);
   auto& response = group.child("response");
   response.put("speed", speeds_of(curve), "rad/s", "shaft speed");
