@@ -112,8 +112,7 @@ bool Checkpoint::exists() const {
 
 void Checkpoint::remove() const {
   std::error_code ignored;
-  std::filesystem::remove(path_, ignored);
-  std::filesystem::remove(previous(), ignored);
+  for (const char* left : {"", ".prev", ".next", ".next.part"}) std::filesystem::remove(path_.string() + left, ignored);
 }
 
 }  // namespace whirl::io

@@ -64,6 +64,7 @@ void run_studies(MPI_Comm comm, const Deck& deck, const Say& say, bool resume, S
 std::vector<std::string> run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
   Writer writer(comm, deck, options);
   run_studies(comm, deck, options.say, options.resume, writer);
+  writer.end();
   return writer.undelivered();
 }
 

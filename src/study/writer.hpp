@@ -29,6 +29,8 @@ public:
   [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study) override;
   /// Writes the files as well.
   void add(StudyResult result) override;
+  /// After the last study: removes checkpoints of parts of studies that a kill between result and removal left.
+  void end();
   [[nodiscard]] const io::Group& studies() const override { return root_.group("studies"); }
   [[nodiscard]] std::span<const io::StudySummary> summaries() const override { return all_.studies; }
   /// `NAME: reason` for each study that delivered nothing.

@@ -42,8 +42,11 @@ TEST(Checkpoint, GivesBackTheNewest) {
   const Checkpoint::Loaded l = c.load();
   EXPECT_EQ(l.state, state(2));
   EXPECT_FALSE(l.from_previous);
+  // What a kill leaves of one that was not finished.
+  for (const char* left : {"branch.h5.next", "branch.h5.next.part"}) std::ofstream(folder / left) << "half";
   c.remove();
   EXPECT_FALSE(c.exists());
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "."));
 }
 
 TEST(Checkpoint, ADamagedOneFallsBackToItsPredecessor) {

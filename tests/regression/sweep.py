@@ -104,6 +104,10 @@ def resume(h):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         kills += 1
+    # A kill between the result of the sweep and the removal of what its variants left.
+    (out / "clearance variant 9.checkpoint.h5").write_text("of a study that has ended")
+    with open(out / "manifest.txt", "a") as manifest:
+        manifest.write("clearance variant 9.checkpoint.h5\n")
     h.true("the first variant was kept", kept)
     h.close("killed and resumed, worst", apart(whole, plain(h.run("train.yaml", "killed", SHORT, ["--resume"], launcher=[]))), 0, 1e-12)
     h.true("no checkpoint is left", not list(out.glob("*.checkpoint.h5*")))

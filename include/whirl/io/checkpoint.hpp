@@ -37,7 +37,7 @@ public:
 
   /// True if there is something to load, readable or not.
   [[nodiscard]] bool exists() const;
-  /// Removes both files.
+  /// Removes both files, and what a kill left of an unfinished one.
   void remove() const;
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
