@@ -161,7 +161,7 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
     if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;
-    if (mode.neutral()) neutral += mode.lambda.imag() != 0 ? 2 : 1;
+    if (mode.neutral() && std::abs(mode.lambda.imag()) <= limit) neutral += mode.lambda.imag() != 0 ? 2 : 1;
   }
   solve::Stability s = solve::make_stability(std::move(values), [&rounding](std::complex<double> v) {
     const auto at = rounding.find(v.real());
