@@ -6,6 +6,7 @@ from matplotlib.lines import Line2D
 from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, UNDAMPED, WARN, levels, runs, save, speed_axis
 
 LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4))}
+EITHER = "either: equal modes, any combination of which is a mode"
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
 OVERDAMPED = 3.0  # log. decrement of modes that lose 95 % of their amplitude in a turn
 
@@ -22,6 +23,11 @@ def modes_of(study):
         pick = pick[np.argsort(rows["speed"][pick], kind="stable")]
         whirl = rows["whirl"][pick] if rows["whirl"] is not None else np.full(len(pick), "forward")
         yield int(mode), rows["speed"][pick], rows["frequency"][pick], rows["log_decrement"][pick], whirl
+
+
+def with_either(words, whirls):
+    """The words below a picture, with those for equal modes where one of these is shown."""
+    return f"{words}; {EITHER}" if any("either" in whirl for whirl in whirls) else words
 
 
 def crowded_out(study):
@@ -54,10 +60,12 @@ def draw_lines(axis, x, y, decrement, whirl):
             axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
         return
     worst = np.minimum(decrement[:-1], decrement[1:])
-    for start, stop in runs(list(zip(whirl[:-1], map(colour_of, worst), worst > OVERDAMPED))):
+    # Where equal modes part, each has the sense that it has from there on.
+    sense = [after if before == "either" else before for before, after in zip(whirl, whirl[1:])]
+    for start, stop in runs(list(zip(sense, map(colour_of, worst), worst > OVERDAMPED))):
         heavy = worst[start] > OVERDAMPED
         axis.plot(x[start:stop + 1], y[start:stop + 1], color=LIGHT if heavy else colour_of(worst[start]),
-                  linewidth=1.0 if heavy else 1.6, linestyle=LINES.get(whirl[start], "-"), zorder=1.5 if heavy else 2)
+                  linewidth=1.0 if heavy else 1.6, linestyle=LINES.get(sense[start], "-"), zorder=1.5 if heavy else 2)
 
 
 def label_modes(axis, x, ends):
@@ -156,4 +164,5 @@ def draw(study):
     bottom.set_title("Damping, unstable below zero" + (f"; {hidden} modes are damped more than shown" if hidden else ""))
     label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1] and m[3][-1] <= OVERDAMPED])
     label_modes(bottom, ends[1] * to_speed, [(m[0], m[3][-1]) for m in modes if m[1][-1] == ends[1]])
-    return save(figure, study, "campbell", f"numbers at the right: modes; sense of whirl by kinetic energy; {ROTATION}", handles, 7)
+    words = with_either(f"numbers at the right: modes; sense of whirl by kinetic energy; {ROTATION}", [m[4] for m in modes])
+    return save(figure, study, "campbell", words, handles, 7)

@@ -99,7 +99,8 @@ def all_values(study):
     out.append(tables.Table("Not resolved: bifurcations may lie here", ["where", "why"], doubts))
     modes = [[digits(m.get("speed"), 6), digits(m.get("mode"), 4), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4),
               digits(m.get("damping_ratio"), 4), m.get("whirl") or "", m.get("stability") or ""] for m in study.modes]
-    out.append(tables.Table("All modes", ["speed", "mode", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "damping ratio", "whirl", ""], modes))
+    out.append(tables.Table("All modes", ["speed", "mode", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "damping ratio", "whirl", ""], modes,
+                            tables.EITHER if any(m.get("whirl") == "either" for m in study.modes) else ""))
     if study.kind == "sweep":
         out += sweep_tables.everything(study, tables.Table)
     return [show(t, folded=True) for t in out if t.rows]

@@ -4,7 +4,7 @@ import typing
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .campbell import LINES, OVERDAMPED
+from .campbell import LINES, OVERDAMPED, with_either
 from .curves import along_shaft
 from .style import BAD, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, least_span, length_unit, save, speed_axis
 
@@ -178,8 +178,8 @@ def draw_flat(study, speed, z, shapes, suffix):
         visible = [a for a in grid[:, column] if a.get_visible()]
         visible[-1].set_xlabel("z [m]")
         visible[-1].tick_params(labelbottom=True)
-    return save(figure, study, f"shapes{suffix}", f"{at}; shaded: largest excursion over a turn, scaled to 1 where it is largest; triangles: bearings",
-                axes[0].get_legend_handles_labels()[0])
+    words = with_either(f"{at}; shaded: largest excursion over a turn, scaled to 1 where it is largest; triangles: bearings", [[s.whirl for s in shapes]])
+    return save(figure, study, f"shapes{suffix}", words, axes[0].get_legend_handles_labels()[0])
 
 
 def draw_in_space(study, speed, z, shapes, suffix):
@@ -224,4 +224,5 @@ def draw_in_space(study, speed, z, shapes, suffix):
                Line2D([], [], color=GREY, linestyle=LINES["backward"], linewidth=0.8, label="orbit, backward"),
                Line2D([], [], color=BAD, marker="o", linestyle="none", markersize=4, label="node: crosses the axis"),
                Line2D([], [], color=GREY, linestyle=(0, (2, 2)), linewidth=0.8, label="bearing")]
-    return save(figure, study, f"shapes-3d{suffix}", f"{at}; along z [m], x to the back, y up; each scaled to its largest excursion", handles)
+    words = with_either(f"{at}; along z [m], x to the back, y up; each scaled to its largest excursion", [[s.whirl for s in shapes]])
+    return save(figure, study, f"shapes-3d{suffix}", words, handles)

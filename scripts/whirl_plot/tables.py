@@ -6,6 +6,7 @@ import numpy as np
 
 from . import sweep_tables
 from .bifurcation import Followed
+from .campbell import EITHER
 from .locus import WORDS as LOCUS_WORDS
 from .margins import MARGIN_HEAD, margin_cells, margin_note, operating_in
 from .response import number, peaks_at
@@ -95,7 +96,8 @@ def modes(study):
         out.append(Table(f"Modes at {digits(float(rows['speed'][-1] * to_speed), 5)} {unit}",
                          ["mode", f"frequency [{frequency_unit}]", "log. decrement", "damping ratio", "whirl", ""],
                          [[int(m), digits(float(f * to_frequency), 5), shown(d, 3), shown(z, 3), str(w), "" if s in (None, "stable") else str(s)]
-                          for speed, m, f, d, z, w, s in zip(rows["speed"], *(rows[k] for k in names)) if speed == rows["speed"][-1]]))
+                          for speed, m, f, d, z, w, s in zip(rows["speed"], *(rows[k] for k in names)) if speed == rows["speed"][-1]],
+                         EITHER if "either" in [w for speed, w in zip(rows["speed"], rows["whirl"]) if speed == rows["speed"][-1]] else ""))
     if study.has("unstable/from"):
         columns = [np.atleast_1d(study.get(f"unstable/{k}")) for k in ("from", "to", "mode", "whirl", "frequency")]
         if len(columns[0]):

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .campbell import modes_of
+from .campbell import modes_of, with_either
 from .shapes import bearing_places
 from .style import GREY, INK, grid_of, save, speed_axis
 
@@ -24,7 +24,8 @@ def draw(study):
     for axis, (mode, speed, frequency, _, whirl) in zip(axes, modes):
         rows = np.nonzero(number == mode)[0]
         rows = rows[np.argsort(at[rows], kind="stable")]
-        image = axis.pcolormesh(speed * to_speed, z, turning[rows].T, cmap="RdBu_r", vmin=-1, vmax=1, shading="nearest", rasterized=True)
+        turns = np.where((whirl == "either")[:, None], np.nan, turning[rows])
+        image = axis.pcolormesh(speed * to_speed, z, turns.T, cmap="RdBu_r", vmin=-1, vmax=1, shading="nearest", rasterized=True)
         for place, _ in bearing_places(study, z):
             axis.axhline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)))
         word = whirl[-1] if len(set(whirl)) == 1 else f"{whirl[0]} to {whirl[-1]}"
@@ -34,4 +35,5 @@ def draw(study):
         axis.set_xlabel(speed_label)
     axes[0].set_ylabel("z [m]", color=INK)
     figure.colorbar(image, ax=list(axes), label="backward circle \u2212 line \u2212 forward circle", shrink=0.8)
-    return save(figure, study, "whirl-map", "colour: 2ab/(a\u00b2+b\u00b2) of the node's ellipse with half-axes a and b, negative backward; broken lines: bearings")
+    words = "colour: 2ab/(a\u00b2+b\u00b2) of the node's ellipse with half-axes a and b, negative backward; broken lines: bearings"
+    return save(figure, study, "whirl-map", with_either(words, [m[4] for m in modes]))

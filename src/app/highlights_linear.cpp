@@ -42,6 +42,8 @@ std::string last_modes(const io::StudySummary& s, const Values& v) {
                                       : fmt::format("diverges, s = +{:.4g} 1/s", m.real)});
   }
   std::string out = grid.text();
+  if (std::ranges::any_of(last, [](const io::ModeEntry& m) { return m.whirl == "either"; }))
+    out += "    either: equal modes, any combination of which is a mode\n";
   if (shown < last.size()) out += fmt::format("    {} more stand in summary.json\n", last.size() - shown);
   if (const auto count = v.get("overdamped"); count && *count > 0)
     out += fmt::format(

@@ -21,6 +21,10 @@ namespace {
 
 using core::check;
 
+// Of a search: what it leaves in equal eigenvalues, relative. Measured on shafts of 101 to 201 nodes between isotropic
+// springs of 1e3 to 1e12 N/m, with and without damping: at most 7e-10.
+constexpr double most_parted = 1e-8;
+
 Eigen::MatrixXd entries(Mat dense) {
   PetscInt n = 0;
   check(MatGetSize(dense, &n, nullptr));
@@ -65,18 +69,22 @@ std::vector<Complex> in_si(const std::vector<Complex>& row, const std::vector<do
   return out;
 }
 
-// Whether rounding may decide the sign of a real part, so that its size must be estimated.
+// Whether rounding may decide the sign of a real part, or part equal eigenvalues, so that its size must be estimated.
 bool doubtful(const EigenSolver& eps, double infinite) {
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));
   double largest = 0, least = std::numeric_limits<double>::infinity();
+  std::vector<Complex> values;
   for (PetscInt i = 0; i < converged; ++i) {
     const Complex value = pair_of(eps.get(), i, nullptr, nullptr, false).value;
     if (!(std::abs(value) < infinite)) continue;
     largest = std::max(largest, std::abs(value));
     least = std::min(least, std::abs(value.real()));
+    values.push_back(value);
   }
-  return least <= DensePencil::asked_below * largest;
+  if (least <= DensePencil::asked_below * largest) return true;
+  const std::vector<bool> near = DensePencil::near_another(values);
+  return std::ranges::find(near, true) != near.end();
 }
 
 // What a solver has found, at least `wanted` of them, below `infinite`; `scales` make the vectors SI. `iterated`: what
@@ -102,7 +110,10 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const ScaledPencil& sc
     if (p.value.imag() < 0 || !finite) continue;
     Mode m;
     m.lambda = p.value;
-    if (options.rounding && iterated) m.rounding = search_tolerance * std::abs(p.value);
+    if (options.rounding && iterated) {
+      m.rounding = search_tolerance * std::abs(p.value);
+      m.blur = most_parted * std::abs(p.value);
+    }
     sizes.emplace_back(1);
     if (vectors) {
       m.shape.resize(p.real.size());
@@ -119,9 +130,11 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const ScaledPencil& sc
     out.push_back(std::move(m));
   }
   if (pencil) {
-    const std::vector<double> rounding = options.rounding ? pencil->rounding() : std::vector<double>{};
-    for (std::size_t k = 0; k < out.size() && options.rounding; ++k)
-      out[k].rounding = rounding[static_cast<std::size_t>(place[k])];
+    const DensePencil::Doubt doubt = options.rounding ? pencil->doubt() : DensePencil::Doubt{};
+    for (std::size_t k = 0; k < out.size() && options.rounding; ++k) {
+      out[k].rounding = doubt.rounding[static_cast<std::size_t>(place[k])];
+      out[k].blur = doubt.blur[static_cast<std::size_t>(place[k])];
+    }
   }
   if (pencil && options.left) {
     const DensePencil::Conditioning of = pencil->conditioning();
@@ -212,20 +225,23 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   });
   if (core::size_of(system.comm()) == 1) return out;
   std::vector<Complex> values;
-  std::vector<Complex> rounding, multiple;
+  std::vector<Complex> rounding, multiple, blur;
   for (const Mode& m : out) {
     values.push_back(m.lambda);
     rounding.emplace_back(m.rounding, m.condition);
     multiple.emplace_back(m.multiplicity, m.vectors);
+    blur.emplace_back(m.blur);
   }
   share(system.comm(), values);
   share(system.comm(), rounding);
   share(system.comm(), multiple);
+  share(system.comm(), blur);
   out.resize(values.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     out[k].lambda = values[k];
     out[k].rounding = rounding[k].real();
     out[k].condition = rounding[k].imag();
+    out[k].blur = blur[k].real();
     out[k].multiplicity = static_cast<int>(multiple[k].real());
     out[k].vectors = static_cast<int>(multiple[k].imag());
     share(system.comm(), out[k].shape);

@@ -69,25 +69,46 @@ double DensePencil::newton_step(std::size_t k) const {
   return std::isfinite(moved) ? moved : std::abs(v);
 }
 
-std::vector<double> DensePencil::rounding() const {
+std::vector<bool> DensePencil::near_another(const std::vector<std::complex<double>>& values) {
+  constexpr double near = 1e-5;
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (values[k].imag() != 0 && std::isfinite(std::abs(values[k]))) order.push_back(k);
+  std::ranges::sort(order, {}, [&](std::size_t k) { return values[k].imag(); });
+  std::vector<bool> out(values.size(), false);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const std::complex<double> a = values[order[i]], b = values[order[j]];
+      const double reach = near * std::min(std::abs(a), std::abs(b));
+      if (b.imag() - a.imag() > reach) break;
+      if (std::abs(a - b) <= reach) out[order[i]] = out[order[j]] = true;
+    }
+  return out;
+}
+
+DensePencil::Doubt DensePencil::doubt() const {
   constexpr double eps = std::numeric_limits<double>::epsilon();
-  std::vector<double> out(values_.size(), 0.0);
+  const std::vector<bool> near = near_another(values_);
+  Doubt doubt{std::vector<double>(values_.size(), 0.0), std::vector<double>(values_.size(), 0.0)};
+  std::vector<double>& out = doubt.rounding;
   double largest = 0;
   for (const auto& v : values_)
     if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v));
   const auto asked = [&](std::complex<double> v) { return std::abs(v.real()) <= asked_below * largest; };
-  const bool any = std::any_of(values_.begin(), values_.end(), asked);
+  const bool any = std::ranges::any_of(values_, asked) || std::ranges::find(near, true) != near.end();
   const Eigen::MatrixXcd left = any ? this->left() : Eigen::MatrixXcd();
   const Eigen::MatrixXcd of_a = any ? images(a_, vectors_) : left, of_b = any ? images(b_, vectors_) : left;
   const double size_a = a_.norm(), size_b = b_.norm();
   for (std::size_t k = 0; k < values_.size(); ++k) {
-    if (!asked(values_[k])) continue;
+    if (!asked(values_[k]) && !near[k]) continue;
     const auto column = static_cast<Eigen::Index>(k);
     const double size = size_a + std::abs(values_[k]) * size_b, most = std::sqrt(eps) * size / size_b;
     const double left_over = (of_a.col(column) - values_[k] * of_b.col(column)).norm();
     const double first =
         left.size() > 0 ? (eps * size * vectors_[k].norm() + left_over) * left.row(column).norm() : 1e-11 * largest;
-    out[k] = std::isfinite(first) ? std::min(first, most) : most;
+    const double moved = std::isfinite(first) ? std::min(first, most) : most;
+    if (asked(values_[k])) out[k] = moved;
+    if (near[k]) doubt.blur[k] = moved;
   }
   // The QZ algorithm is backward stable for the norm of the pencil, not row by row: with stiff springs on light masses
   // it returns growing eigenvalues that a step of Newton's method moves by about as much as they grow. Their sign means
@@ -96,7 +117,7 @@ std::vector<double> DensePencil::rounding() const {
   for (std::size_t k = 0; k < values_.size(); ++k)
     if (values_[k].real() > out[k] && std::isfinite(std::abs(values_[k])))
       out[k] = std::max(out[k], std::min(safety * newton_step(k), std::abs(values_[k])));
-  return out;
+  return doubt;
 }
 
 DensePencil::Conditioning DensePencil::conditioning() const {

@@ -10,6 +10,8 @@ namespace whirl::spectral {
 /// The pencil A x = lambda B x with what a solver found of it.
 class DensePencil {
 public:
+  /// Which of these vibrate and have another one within 1e-5 of their size.
+  [[nodiscard]] static std::vector<bool> near_another(const std::vector<std::complex<double>>& values);
   /// Rounding is estimated for eigenvalues whose real part is below this part of the largest modulus.
   static constexpr double asked_below = 1e-7;
   DensePencil(Eigen::MatrixXd a, Eigen::MatrixXd b) : a_(std::move(a)), b_(std::move(b)) {}
@@ -22,7 +24,13 @@ public:
   /// exceeds asked_below of the largest modulus; those it cannot decide. Of one that grows at least ten times what a
   /// step of Newton's method moves it by. Source: Stewart and Sun (1990), Matrix Perturbation Theory, sec. VI.2;
   /// Frobenius norms.
-  [[nodiscard]] std::vector<double> rounding() const;
+  ///
+  /// The same bound for eigenvalues that vibrate and have another one within 1e-5 of their size, whatever their real
+  /// parts: by as much rounding may part a double one. Zero for all others.
+  struct Doubt {
+    std::vector<double> rounding, blur;
+  };
+  [[nodiscard]] Doubt doubt() const;
 
   /// What Mode tells of the same name, for each eigenvalue added.
   struct Conditioning {

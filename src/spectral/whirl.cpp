@@ -22,6 +22,8 @@ const char* name_of(Sense sense) {
       return "forward";
     case Sense::backward:
       return "backward";
+    case Sense::either:
+      return "either";
     default:
       return "mixed";
   }
@@ -55,6 +57,38 @@ Sense sense_of_whirl(const WhirlEnergy& energy) {
 Sense sense_of_whirl(const std::vector<std::complex<double>>& x, const std::vector<std::complex<double>>& y,
                      const std::vector<double>& mass) {
   return sense_of_whirl(whirl_energy(x, y, mass));
+}
+
+std::optional<std::array<Combination, 2>> extremes_of_whirl(const std::vector<std::complex<double>>& a,
+                                                            const std::vector<std::complex<double>>& b,
+                                                            const std::vector<double>& mass) {
+  using Complex = std::complex<double>;
+  constexpr double dependent = 1e-6;  // square of the sine of the angle between the shapes
+  const std::size_t n = mass.size();
+  const std::array<const std::vector<Complex>*, 2> shapes{&a, &b};
+  std::array<std::array<Complex, 2>, 2> w{}, e{};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j)
+      for (std::size_t k = 0; k < n; ++k) {
+        const Complex x = std::conj((*shapes[i])[k]), y = std::conj((*shapes[i])[n + k]);
+        e[i][j] += mass[k] * (x * (*shapes[j])[k] + y * (*shapes[j])[n + k]) / 2.0;
+        w[i][j] += mass[k] * (y * (*shapes[j])[k] - x * (*shapes[j])[n + k]) / Complex(0, 2);
+      }
+  const double e0 = e[0][0].real(), e1 = e[1][1].real(), w0 = w[0][0].real(), w1 = w[1][1].real();
+  const double area = e0 * e1 - std::norm(e[0][1]);
+  if (!(area > dependent * e0 * e1)) return std::nullopt;
+  const double half = (w0 * e1 + w1 * e0) / 2 - (w[0][1] * std::conj(e[0][1])).real();
+  const double root = std::sqrt(std::max(half * half - area * (w0 * w1 - std::norm(w[0][1])), 0.0));
+  std::array<Combination, 2> out{{{1, 0}, {0, 1}}};
+  if (root <= 1e-12 * area) return out;  // all turn alike
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double t = (half + (k == 0 ? -root : root)) / area;
+    const Complex across = w[0][1] - t * e[0][1];
+    const double first = w0 - t * e0, second = w1 - t * e1;
+    // The longer one of the two rows decides.
+    out[k] = std::abs(first) > std::abs(second) ? Combination{-across, first} : Combination{second, -std::conj(across)};
+  }
+  return out;
 }
 
 std::vector<double> turning(const std::vector<std::complex<double>>& x, const std::vector<std::complex<double>>& y) {

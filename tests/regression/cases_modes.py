@@ -5,6 +5,7 @@ cases_modes.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
 import json
 import math
+import subprocess
 import sys
 
 import h5py
@@ -226,6 +227,33 @@ def textbook(h):
                all(abs(a - b) < 1e-6 * a for a, b in zip(pairs[::2], pairs[1::2])), str([m["stability"] for m in s["modes"]]))
 
 
+def equal(h):
+    """An isotropic machine at rest: equal modes turn either way. At a speed, or with springs that differ, each has its sense."""
+    deck = h.source / "tests/cases/shaft_mesh.yaml"
+    one = "studies=[{modes: {name: m, speeds: [%s], count: 7, shapes_at: [1 rad/s]}}]"
+    for ranks in (1, 2, 3):
+        s = h.run(deck, f"rest {ranks}", [one % "0 rad/s, 1 rad/s"], launcher=[] if ranks == 1 else [*h.launcher, "-n", str(ranks)])["m"]
+        words = [(m["speed"], m["whirl"]) for m in s["modes"]]
+        h.true(f"at rest, {ranks} ranks", all(m["whirl"] == m["whirl_rule"] == "either" for m in s["modes"][:7]), str(words))
+        h.true("at 1 rad/s", [m["whirl"] for m in s["modes"][7:]] == ["backward", "forward"] * 3 + ["backward"], str(words))
+        with h5py.File(h.work / f"rest {ranks}" / "results.h5") as f:
+            table = f["studies/m/spectrum"]
+            share = table["forward_share"][()]
+            h.close("    these two are circles, backward first", np.abs(share[:7] - [-1, 1, -1, 1, -1, 1, -1]).max(), 0, 1e-9)
+            h.true("    the column says what it is", "either" in table["whirl"].attrs["description"] and table["whirl"].asstr()[0] == "either")
+        h.true("    nothing is the first forward mode", value(s, "at.0.first_forward.frequency") is None and value(s, "at.1.first_forward.frequency") > 0)
+    held = "rotor.loss_factor=0.01"
+    s = h.run(deck, "loss", [one % "0 rad/s", "rotor.internal_damping=", held], launcher=[])["m"]
+    h.true("with a loss factor", all(m["whirl"] == "either" for m in s["modes"]), str([m["whirl"] for m in s["modes"]]))
+    said = subprocess.run(h.command(deck, h.work / "said", [one % "0 rad/s"], launcher=[], bars=False), capture_output=True, text=True).stdout
+    h.true("the screen explains", "either: equal modes" in said, said)
+    s = h.run(deck, "springs", [one % "0 rad/s", "bearings.*.film.stiffness=[20 MN/m, 0 N/m, 0 N/m, 20.001 MN/m]"], launcher=[])["m"]
+    h.true("springs that differ by 5e-5", all(m["whirl"] == m["whirl_rule"] == "planar" for m in s["modes"]), str([m["whirl"] for m in s["modes"]]))
+    s = h.run(deck, "range", ["studies=[{modes: {name: m, range: {from: 0 rad/s, to: 900 rad/s}, points: 4, count: 4}}]"], launcher=[])["m"]
+    tracks = [[m["whirl"] for m in s["modes"] if m["mode"] == k] for k in (1, 2, 3, 4)]
+    h.true("from rest on", tracks == [["either"] + [w] * 3 for w in ("backward", "forward") * 2], str(tracks))
+
+
 def supports(h):
     """Masses below the bearings: modes as published, and a map that meets the Campbell diagram."""
     deck = h.source / "tests/cases/support_mass.yaml"
@@ -261,5 +289,5 @@ def level_1(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {f.__name__: f for f in (divergence, fine, level_1, limits, missing, supports, textbook)}[sys.argv[3]](harness)
+    {f.__name__: f for f in (divergence, equal, fine, level_1, limits, missing, supports, textbook)}[sys.argv[3]](harness)
     harness.finish()

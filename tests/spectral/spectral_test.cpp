@@ -21,15 +21,15 @@ namespace {
 // A chain of `masses` unit masses and unit springs between walls, without damping: the rows q' = v have no diagonal.
 struct Chain {
   int masses;
-  double damping = 0;
+  double damping = 0, stiffness = 1;
   template <class T>
   Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T) const {
     Column<T> f(2 * masses);
     for (int k = 0; k < masses; ++k) {
       f(k) = xdot(k) - x(masses + k);
-      f(masses + k) = xdot(masses + k) + damping * x(masses + k) + 2.0 * x(k);
-      if (k > 0) f(masses + k) -= x(k - 1);
-      if (k + 1 < masses) f(masses + k) -= x(k + 1);
+      f(masses + k) = xdot(masses + k) + damping * x(masses + k) + 2.0 * stiffness * x(k);
+      if (k > 0) f(masses + k) -= stiffness * x(k - 1);
+      if (k + 1 < masses) f(masses + k) -= stiffness * x(k + 1);
     }
     return f;
   }
@@ -292,6 +292,61 @@ TEST(Words, ForModes) {
   EXPECT_DOUBLE_EQ(spectral::mac({1, i}, {1, -i}), 0);
   EXPECT_DOUBLE_EQ(spectral::mac({1, 0}, {1, 1}), 0.5);
   EXPECT_STREQ(spectral::name_of(Sense::backward), "backward");
+}
+
+// Two masses that move alike in x and in y: some combinations of both motions are circles, whatever two are given.
+TEST(Words, ForEqualModes) {
+  const Complex i(0, 1);
+  using Shape = std::vector<Complex>;
+  const std::vector<double> mass{2, 1};
+  const auto turns_of = [&](const Shape& a, const Shape& b) {
+    std::vector<double> turns;
+    const auto extremes = spectral::extremes_of_whirl(a, b, mass);
+    for (std::size_t k = 0; extremes && k < 2; ++k) {
+      Shape x, y;
+      for (std::size_t n = 0; n < 4; ++n)
+        (n < 2 ? x : y).push_back((*extremes)[k][0] * a[n] + (*extremes)[k][1] * b[n]);
+      turns.push_back(spectral::whirl_energy(x, y, mass).forward);
+    }
+    return turns;
+  };
+  const auto expect_turns = [&](const Shape& a, const Shape& b, double backward, double forward) {
+    const std::vector<double> turns = turns_of(a, b);
+    ASSERT_EQ(turns.size(), 2U);
+    EXPECT_NEAR(turns[0], backward, 1e-12);
+    EXPECT_NEAR(turns[1], forward, 1e-12);
+  };
+  expect_turns({1, 2, 0, 0}, {0, 0, 1, 2}, -1, 1);                                // lines in x and in y
+  expect_turns({1, 2, 0.3 - i, 0.6 - 2.0 * i}, {0.1 * i, 0.2 * i, 1, 2}, -1, 1);  // any two
+  expect_turns({1, 2, -i, -2.0 * i}, {1, -1, -i, i}, 1, 1);                       // two forward circles
+  expect_turns({1, 0, -0.5 * i, 0}, {0, 1, 0, -0.5 * i}, 0.8, 0.8);               // two ellipses
+  EXPECT_TRUE(turns_of({1, 2, -i, -2.0 * i}, {2.0 * i, 4.0 * i, 2, 4}).empty());  // one and the same
+}
+
+// Equal eigenvalues lie within the blur of each other, others do not.
+TEST(Modes, BlurTellsEqualFromNear) {
+  const int masses = 10;
+  for (const double apart : {0.0, 1e-9, 1e-7}) {
+    test::SmallSystem s(MPI_COMM_WORLD, 4 * masses, 0, 1,
+                        [&]<class T>(double t, const Column<T>& x, const Column<T>& xdot, T p) {
+                          const int n = 2 * masses;
+                          Column<T> f(2 * n);
+                          f << Chain{masses, 0.1}(t, Column<T>(x.head(n)), Column<T>(xdot.head(n)), p),
+                              Chain{masses, 0.1, 1 + apart}(t, Column<T>(x.tail(n)), Column<T>(xdot.tail(n)), p);
+                          return f;
+                        });
+    const core::Vector x = s.vector(Eigen::VectorXd::Zero(4 * masses));
+    spectral::EigenOptions o;
+    o.rounding = true;
+    const auto modes = spectral::modes(s, x.get(), o);
+    ASSERT_EQ(modes.size(), 2U * masses);
+    for (std::size_t k = 0; k < modes.size(); k += 2) {
+      const double distance = std::abs(modes[k + 1].lambda - modes[k].lambda),
+                   blur = std::max(modes[k].blur, modes[k + 1].blur);
+      EXPECT_EQ(distance <= blur, apart == 0) << modes[k].lambda << " " << distance << " " << blur;
+      EXPECT_LE(blur, 1e-10);
+    }
+  }
 }
 
 // Rounding moves the eigenvalues of an undamped chain off the axis by less than its estimate, and that by no more than

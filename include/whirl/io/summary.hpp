@@ -66,7 +66,7 @@ struct Suspicion {
 /// One eigenvalue real + i imag (rad/s) at a speed (in `speed_unit`, that of the study's range).
 struct ModeEntry {
   double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
-  std::string whirl = {};  ///< forward, backward, mixed, planar
+  std::string whirl = {};  ///< forward, backward, mixed, planar, either (equal modes)
   std::string speed_unit = "rad/s";
   std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
   std::string stability = {};               ///< stable, undamped (its real part is rounding), unstable; or empty

@@ -27,6 +27,9 @@ struct Mode {
   double condition = std::numeric_limits<double>::quiet_NaN();
   int multiplicity = 1;  ///< eigenvalues that rounding does not tell from this one, itself included
   int vectors = 1;       ///< independent right vectors that these have
+  /// Of one that vibrates: other eigenvalues within this distance may be the same one, parted by rounding [rad/s].
+  /// Estimated with EigenOptions::rounding; zero where it is known that no other is near.
+  double blur = 0;
 
   /// The real part is nothing but rounding: neither growth nor decay can be told.
   [[nodiscard]] bool neutral() const { return std::abs(lambda.real()) <= rounding; }

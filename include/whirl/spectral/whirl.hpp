@@ -1,12 +1,15 @@
 #pragma once
 // Words for eigenvalues and mode shapes of rotors.
 
+#include <array>
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace whirl::spectral {
 
-enum class Sense { planar, forward, backward, mixed };
+/// `either`: of equal eigenvalues, any combination of whose shapes is a mode.
+enum class Sense { planar, forward, backward, mixed, either };
 [[nodiscard]] const char* name_of(Sense sense);
 
 /// How the kinetic energy of a shape divides. x + i y of a node is f exp(i omega t) + conj(b) exp(-i omega t) with
@@ -26,6 +29,14 @@ struct WhirlEnergy {
 [[nodiscard]] Sense sense_of_whirl(const WhirlEnergy& energy);
 [[nodiscard]] Sense sense_of_whirl(const std::vector<std::complex<double>>& x,
                                    const std::vector<std::complex<double>>& y, const std::vector<double>& mass = {});
+
+/// Of all combinations c[0] a + c[1] b of two shapes (each x at the nodes, then y) the two whose `forward` is least and
+/// largest: W c = t E c with the Hermitian forms W = Im(y* M x) and E = (x* M x + y* M y)/2 of a and b. Nothing where
+/// the shapes are dependent.
+using Combination = std::array<std::complex<double>, 2>;
+[[nodiscard]] std::optional<std::array<Combination, 2>> extremes_of_whirl(const std::vector<std::complex<double>>& a,
+                                                                          const std::vector<std::complex<double>>& b,
+                                                                          const std::vector<double>& mass);
 
 /// How each node turns: sin of the phase by which y lags behind x, weighted by both, 2 Im(conj(y) x)/(|x|^2 + |y|^2) in
 /// [-1, 1]: 1 on a forward circle, -1 on a backward one, 0 on a line; 0 for a node that moves less than 1e-6 of the one

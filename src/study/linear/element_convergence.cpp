@@ -130,7 +130,7 @@ StudyResult ElementConvergence::run(Context& context) {
     Walker walker(system);
     const Vec x = walker.at(options.speed.value);
     ModeSearch search;
-    auto modes = shaft_modes(system, x, options.count, 0, std::numeric_limits<double>::infinity(), search);
+    auto modes = shaft_modes(system, x, options.count, 2, std::numeric_limits<double>::infinity(), search);
     // The lowest that vibrate; growing ones that stand among the others are as near on every mesh.
     std::erase_if(modes, [](const ShaftMode& m) { return !spectral::vibrates(m.lambda); });
     const std::vector<double> mass = rotor::node_masses(train.rotor);

@@ -167,6 +167,7 @@ std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, std::v
     spectral::Mode& m = modes[k];
     m.lambda = moving[k].lambda;
     m.rounding = 1e-9 * std::abs(m.lambda);  // Newton's method has solved it
+    m.blur = 10 * m.rounding;
     // Condition and multiplicity belong to the machine without loss.
     m.condition = std::numeric_limits<double>::quiet_NaN();
     m.multiplicity = m.vectors = 1;

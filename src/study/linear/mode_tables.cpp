@@ -14,8 +14,8 @@ using Complex = std::complex<double>;
 void ModeTables::add(const ShaftMode& m, io::ModeEntry& entry) {
   const auto energy = spectral::whirl_energy(m.x, m.y, mass_);
   const std::vector<double> turning = spectral::turning(m.x, m.y);
-  entry.whirl = spectral::name_of(spectral::sense_of_whirl(energy));
-  entry.whirl_rule = spectral::name_of(spectral::sense_by_nodes(turning));
+  entry.whirl = spectral::name_of(sense_of(m));
+  entry.whirl_rule = spectral::name_of(m.either ? spectral::Sense::either : spectral::sense_by_nodes(turning));
   entry.more["participation"] = m.participation;
   speed_.push_back(deck::number_to_si(entry.speed, entry.speed_unit));
   frequency_.push_back(m.lambda.imag());
@@ -40,7 +40,7 @@ void ModeTables::add(const ShaftMode& m, io::ModeEntry& entry) {
 }
 
 void ModeTables::put_spectrum(io::Group& spectrum) const {
-  spectrum.put("whirl", sense_, "sense of whirl by the kinetic energy of the shaft's nodes");
+  spectrum.put("whirl", sense_, whirl_text);
   spectrum.put("whirl_rule", rule_, "sense of whirl by the nodes alone: mixed if they do not all turn one way");
   spectrum.put("whirl_share", whirl_, "1", "of the kinetic energy: 0 every node on a line, 1 on a circle");
   spectrum.put("forward_share", forward_, "1", "the same, backward motion counted negative");
@@ -92,7 +92,7 @@ void ModeTables::warn(io::StudySummary& summary, const std::map<double, ModeSear
 }
 
 spectral::Sense ModeTables::sense_of(const ShaftMode& mode) const {
-  return spectral::sense_of_whirl(mode.x, mode.y, mass_);
+  return mode.either ? spectral::Sense::either : spectral::sense_of_whirl(mode.x, mode.y, mass_);
 }
 
 void ModeTables::put_shapes(io::Group& shapes, const std::vector<double>& speeds,
@@ -126,7 +126,7 @@ void ModeTables::put_shapes(io::Group& shapes, const std::vector<double>& speeds
   shapes.put("z", z_, "m", "axial position of the nodes");
   shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
   shapes.put("log_decrement", at_decrement, "1", "of the shapes");
-  shapes.put("whirl", at_sense, "sense of whirl by the kinetic energy of the shaft's nodes");
+  shapes.put("whirl", at_sense, whirl_text);
 }
 
 }  // namespace whirl::study

@@ -14,6 +14,11 @@
 
 namespace whirl::study {
 
+/// What columns of the sense of whirl say of themselves.
+inline constexpr const char* whirl_text =
+    "sense of whirl by the kinetic energy of the shaft's nodes; either: the mode has an equal one, any combination of "
+    "both is a mode, and these two turn backward and forward as much as any";
+
 /// One row for each mode at each speed asked for.
 class ModeTables {
 public:
@@ -33,7 +38,7 @@ public:
   /// Shapes of modes at some speeds [rad/s].
   void put_shapes(io::Group& shapes, const std::vector<double>& speeds,
                   const std::vector<std::span<const ShaftMode>>& modes) const;
-  /// The sense of whirl by the kinetic energy of the nodes.
+  /// The sense of whirl by the kinetic energy of the nodes; `either` of equal modes without a common one.
   [[nodiscard]] spectral::Sense sense_of(const ShaftMode& mode) const;
 
 private:

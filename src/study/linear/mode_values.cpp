@@ -40,8 +40,10 @@ const char* stability_of(const ShaftMode& mode, double speed, const ModeBars& ba
 
 std::string ModeValues::words_of(const ShaftMode& mode, std::complex<double> lambda) const {
   if (!spectral::vibrates(lambda)) return fmt::format("mode {} diverges (s = +{:.4g} 1/s)", mode.id, lambda.real());
-  return fmt::format("mode {}, {} whirl at {:.4g} Hz", mode.id, spectral::name_of(tables_.sense_of(mode)),
-                     lambda.imag() / (2 * std::numbers::pi));
+  const spectral::Sense sense = tables_.sense_of(mode);
+  const std::string whirl =
+      sense == spectral::Sense::either ? "whirl either way" : fmt::format("{} whirl", spectral::name_of(sense));
+  return fmt::format("mode {}, {} at {:.4g} Hz", mode.id, whirl, lambda.imag() / (2 * std::numbers::pi));
 }
 
 void ModeValues::put_speed(io::StudySummary& summary, const Station& station) const {
@@ -173,7 +175,7 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
   table.put("from", from, "rad/s", "speed from which the mode grows");
   table.put("to", to, "rad/s", "speed up to which it grows");
   table.put("mode", mode, "mode followed by its shape");
-  table.put("whirl", whirl, "sense of whirl by the kinetic energy of the shaft's nodes; none: it diverges");
+  table.put("whirl", whirl, fmt::format("{}; none: it diverges", whirl_text));
   table.put("frequency", frequency, "rad/s", "where it begins or ends to grow, else where it grows fastest");
   table.put("damping_real", real, "1/s", "likewise");
   table.put("begins", begins, "1: it becomes unstable at `from`; 0: the mode or the range of speeds begins there");

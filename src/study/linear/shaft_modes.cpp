@@ -5,6 +5,7 @@
 
 #include "study/bars/mesh_wave.hpp"
 #include "study/linear/mode_loss.hpp"
+#include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -31,6 +32,65 @@ double participation(const std::vector<Complex>& shape, const std::vector<double
   for (std::size_t k = 0; k < static_cast<std::size_t>(machine); ++k)
     largest = std::max(largest, std::abs(shape[k]) / scale[k]);
   return largest;
+}
+
+// The largest displacement becomes one.
+void normalise(ShaftMode& m) {
+  Complex largest = 0;
+  for (const auto* column : {&m.x, &m.y})
+    for (const Complex& v : *column)
+      if (std::abs(v) > std::abs(largest)) largest = v;
+  if (largest == 0.0) return;
+  for (auto* column : m.columns())
+    for (Complex& v : *column) v /= largest;
+}
+
+std::vector<Complex> combined(const std::vector<Complex>& a, const std::vector<Complex>& b,
+                              const spectral::Combination& c) {
+  std::vector<Complex> out;
+  for (std::size_t k = 0; k < a.size(); ++k) out.push_back(c[0] * a[k] + c[1] * b[k]);
+  return out;
+}
+
+// Whether the combinations of two shapes turn in more than one sense. Those that turn most go to `turned`.
+bool turn_either_way(const ShaftMode& a, const ShaftMode& b, const std::vector<double>& mass,
+                     std::array<ShaftMode, 2>& turned) {
+  const auto extremes = spectral::extremes_of_whirl(a.both(), b.both(), mass);
+  if (!extremes) return false;
+  turned = {a, b};
+  for (std::size_t k = 0; k < 2; ++k) {
+    ShaftMode from[] = {a, b};
+    for (std::size_t c = 0; c < 4; ++c)
+      *turned[k].columns()[c] = combined(*from[0].columns()[c], *from[1].columns()[c], (*extremes)[k]);
+    normalise(turned[k]);
+  }
+  const auto sense = [&](const ShaftMode& m) { return spectral::sense_of_whirl(m.x, m.y, mass); };
+  return sense(turned[0]) != sense(turned[1]);
+}
+
+// An isotropic machine at rest has double eigenvalues: what a solver returns of their shapes is chance.
+void tell_equal(const std::vector<ShaftMode*>& modes, const std::vector<double>& mass) {
+  const auto equal = [](const ShaftMode& a, const ShaftMode& b) {
+    return spectral::vibrates(a.lambda) && std::abs(a.lambda - b.lambda) <= std::max(a.blur, b.blur);
+  };
+  std::vector<bool> known(modes.size(), false);
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    if (known[i]) continue;
+    std::vector<ShaftMode*> group;
+    for (std::size_t j = i; j < modes.size(); ++j)
+      if (!known[j] && equal(*modes[i], *modes[j])) {
+        known[j] = true;
+        group.push_back(modes[j]);
+      }
+    std::array<ShaftMode, 2> turned;
+    bool either = false;
+    for (std::size_t a = 0; a < group.size() && !either; ++a)
+      for (std::size_t b = a + 1; b < group.size() && !either; ++b)
+        either = turn_either_way(*group[a], *group[b], mass, turned);
+    if (either && group.size() == 2)
+      for (std::size_t k = 0; k < 2; ++k) *group[k] = std::move(turned[k]);
+    for (ShaftMode* m : group) m->either = either;
+  }
 }
 
 }  // namespace
@@ -126,23 +186,21 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     m.multiplicity = mode.multiplicity;
     m.vectors = mode.vectors;
     m.undamped = mode.neutral();
+    m.blur = mode.blur;
     m.extra = growing && moves && !low;
     m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
-    Complex largest = 0;
-    for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
+    for (std::size_t i = 0; i + 3 < part[0].size(); i += 4)
       for (std::size_t k = 0; k < 4; ++k) m.columns()[k]->emplace_back(part[0][i + k], part[1][i + k]);
-      for (const Complex& v : {m.x.back(), m.y.back()})
-        if (std::abs(v) > std::abs(largest)) largest = v;
-    }
-    if (largest != 0.0)
-      for (auto* column : m.columns())
-        for (Complex& v : *column) v /= largest;
+    normalise(m);
     (low || growing ? listed : more).push_back(std::move(m));
   }
   search.listed = static_cast<double>(listed.size());
   std::sort(search.overdamped.begin(), search.overdamped.end(),
             [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
   listed.insert(listed.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  std::vector<ShaftMode*> all;
+  for (ShaftMode& m : listed) all.push_back(&m);
+  tell_equal(all, rotor::node_masses(system.train().rotor));
   return listed;
 }
 
@@ -164,6 +222,7 @@ std::vector<double> pack(std::vector<ShaftMode> modes, const ModeSearch& search)
     put({m.undamped ? 1.0 : 0.0, m.participation});
     put({static_cast<double>(m.multiplicity), static_cast<double>(m.vectors)});
     put({m.condition, m.extra ? 1.0 : 0.0});
+    put({m.either ? 1.0 : 0.0, 0});
     for (const auto* column : m.columns())
       for (const Complex& v : *column) put(v);
   }
@@ -195,6 +254,7 @@ std::vector<ShaftMode> unpack(const std::vector<double>& flat, ModeSearch& searc
     const Complex last = take();
     m.condition = last.real();
     m.extra = last.imag() > 0;
+    m.either = take().real() > 0;
     for (auto* column : m.columns())
       for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
   }

@@ -17,8 +17,12 @@ struct ShaftMode {
   double participation = 1;  // of the machine: its largest motion over that of any state
   double condition = 0;      // of the eigenvalue, as of spectral::Mode; not a number: not known or not asked for
   int multiplicity = 1, vectors = 1;
-  bool extra = false;     // it is listed for nothing but its growth, above those asked for
-  int id = -1;            // the same for the same mode at other speeds
+  bool extra = false;  // it is listed for nothing but its growth, above those asked for
+  int id = -1;         // the same for the same mode at other speeds
+  /// Another mode has the same eigenvalue but for rounding, and they have no sense of whirl in common: any combination
+  /// of the two is a mode. These are the two that turn most, backward first.
+  bool either = false;
+  double blur = 0;        // as of spectral::Mode; not kept by pack()
   bool put_back = false;  // it is none of those asked for, but grows at a speed beside this one
 
   [[nodiscard]] bool grows() const { return !undamped && lambda.real() > 0; }
