@@ -254,6 +254,21 @@ def equal(h):
     h.true("from rest on", tracks == [["either"] + [w] * 3 for w in ("backward", "forward") * 2], str(tracks))
 
 
+def many(h):
+    """Nearly all modes of a mesh: those that a finer one has, too, have bars, and a warning names the others; or says why there are none."""
+    deck = h.source / "tests/cases/shaft_mesh.yaml"
+    cut = ["rotor.segments=[" + ", ".join(["{length: 25 mm, diameter: 40 mm}"] * 40) + "]", "bearings.right.node=41", "rotor.internal_damping=", "studies=[{modes: {name: m, speeds: [0 rad/s], count: 139}}]"]
+    s = h.run(deck, "many", cut, launcher=[], bars=True)["m"]
+    known = [m["imag_uncertainty"] is not None for m in s["modes"]]
+    h.true("bars of the lower modes", all(known[:80]), str(known))
+    h.close("    a small one, of the first [rad/s]", s["modes"][0]["imag_uncertainty"], 0, 0.01)
+    h.true("    no bars of some", not all(known) and sum(known) > 100, str(sum(known)))
+    first = 1 + known.index(False)
+    h.true("    which are named", warned(s, f"no error bars of modes {first}", "cut in two"), str(s.get("warnings")))
+    s = h.run(deck, "none", [*cut[:3], "studies=[{modes: {name: m, speeds: [0 rad/s], count: 6}}]"], flags=["--", "-modes_eps_ncv", "110", "-modes_eps_max_it", "1", "-modes_eps_tol", "1e-15"], launcher=[], bars=True)["m"]
+    h.true("a search without an answer", warned(s, "no error bars of modes 1 to 6", "gave no modes", "converged"), str(s.get("warnings")))
+
+
 def supports(h):
     """Masses below the bearings: modes as published, and a map that meets the Campbell diagram."""
     deck = h.source / "tests/cases/support_mass.yaml"
@@ -289,5 +304,5 @@ def level_1(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {f.__name__: f for f in (divergence, equal, fine, level_1, limits, missing, supports, textbook)}[sys.argv[3]](harness)
+    {f.__name__: f for f in (divergence, equal, fine, level_1, limits, many, missing, supports, textbook)}[sys.argv[3]](harness)
     harness.finish()

@@ -51,6 +51,20 @@ std::vector<std::complex<double>> at_nodes_of(const rotor::Options& whole,
   return out;
 }
 
+// Numbers in a sentence: "1, 3 to 5".
+std::string runs_of(const std::set<int>& numbers) {
+  std::string out;
+  for (auto at = numbers.begin(); at != numbers.end();) {
+    auto end = std::next(at);
+    int last = *at;
+    for (; end != numbers.end() && *end == last + 1; ++end) ++last;
+    out += fmt::format("{}{}", out.empty() ? "" : ", ", *at);
+    if (last > *at) out += fmt::format("{}{}", last == *at + 1 ? ", " : " to ", last);
+    at = end;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<std::size_t> few_of(std::size_t n) {
@@ -68,12 +82,13 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   const bool shaft = has_shaft_mesh(context.machine, context.layout);
   any_ = !meshes.empty() || shaft;
+  several_ = sampled.size() > 1;
   if (!any_ || sampled.empty()) return;
   // The last one is that of the shaft. Its nodes that were there before are those of the modes here.
   const auto compute = [&](std::size_t i) {
-    std::vector<double> all;
+    std::vector<double> all{1};
     const bool of_shaft = i == meshes.size();
-    const bool answered = has_answer([&] {
+    const auto look = [&] {
       const system::Train given = system::train_of(context.machine);
       system::RotorSystem there(layout.space,
                                 of_shaft ? with_cut_shaft(given, 2) : with_film_mesh(given, meshes[i].factor),
@@ -86,13 +101,36 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
         const auto numbers = paired(s.modes, other);
         all.insert(all.end(), numbers.begin(), numbers.end());
       }
-    });
-    if (!answered) all.clear();
+    };
+    // Behind a one stand the numbers, behind a zero the letters of the reason why there are none.
+    std::string reason;
+    if (!has_answer(look, &reason)) {
+      all.assign(1, 0);
+      all.insert(all.end(), reason.begin(), reason.end());
+    }
     return all;
   };
   // Each mesh starts anew and leaves nothing behind.
   const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
-  const auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", none);
+  auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", none);
+  for (std::size_t i = 0; i < on_meshes.size(); ++i) {
+    std::vector<double>& found = on_meshes[i];
+    const std::string mesh =
+        i == meshes.size() ? "the shaft with every segment cut in two" : "another mesh of the films";
+    const bool answered = found.front() != 0;
+    found.erase(found.begin());
+    const std::string failed = answered ? "" : std::string(found.begin(), found.end());
+    if (!answered) found.clear();
+    for (std::size_t s = 0, k = 0; s < sampled.size(); ++s)
+      for (std::size_t m = 0; m < sampled[s].ids.size(); ++m, k += 3) {
+        if (m >= sampled[s].listed || (answered && !std::isnan(found[k]))) continue;
+        without_[answered ? fmt::format("{} has none like them; cut the segments shorter, or ask for fewer modes "
+                                        "('count')",
+                                        mesh)
+                          : fmt::format("{} gave no modes ({})", mesh, failed)]
+            .insert(sampled[s].ids[m]);
+      }
+  }
   std::vector<double> here;
   for (const SampledModes& s : sampled)
     for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);
@@ -110,7 +148,13 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
     }
 }
 
-void ModeBars::tell_shaft(io::StudySummary& summary, const rotor::Options& rotor) const {
+void ModeBars::tell(io::StudySummary& summary, const rotor::Options& rotor, const std::set<int>& shown) const {
+  auto without = without_;
+  for (const int id : shown)
+    if (any_ && !of_.contains(id)) without["it is at none of the speeds at which other meshes are computed"].insert(id);
+  for (const auto& [why, ids] : without)
+    summary.warnings.push_back(
+        fmt::format("no error bars of modes {}{}: {}", runs_of(ids), several_ ? " at some speeds" : "", why));
   if (shaft_error_ == 0) return;
   summary.set("shaft_mesh.largest_error", shaft_error_, "1");
   warn_of_shaft_mesh(summary, rotor, {{"the frequencies of these modes", shaft_error_, most_of_frequency}});

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,9 @@ public:
   /// so that a difference of meshes that vanishes by chance at one speed hides nothing. NaN: unknown.
   [[nodiscard]] std::array<double, 3> at(int id, double speed) const;
   /// The largest error of a frequency by the mesh of the shaft as "shaft_mesh.largest_error" [1], with a warning above
-  /// one per cent that names the element.
-  void tell_shaft(io::StudySummary& summary, const rotor::Options& rotor) const;
+  /// one per cent that names the element; and which modes of these
+  /// that results show have no bars, and why.
+  void tell(io::StudySummary& summary, const rotor::Options& rotor, const std::set<int>& shown) const;
   /// Whether a mode that grows is a vibration of the elements of the shaft.
   [[nodiscard]] bool of_elements(std::complex<double> lambda) const { return is_of_elements(lambda, resolved_to_); }
   /// Whether films or shaft have a mesh.
@@ -59,8 +61,10 @@ private:
   };
   std::map<int, std::vector<Point>> of_;
   bool any_ = false;
-  double resolved_to_;      // [rad/s], by the mesh of the shaft
-  double shaft_error_ = 0;  // zero: not known
+  double resolved_to_;                            // [rad/s], by the mesh of the shaft
+  double shaft_error_ = 0;                        // zero: not known
+  std::map<std::string, std::set<int>> without_;  // modes that results show, by why they have no bars
+  bool several_ = false;                          // speeds, at which they were computed
 };
 
 }  // namespace whirl::study

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "study/bars/mesh_wave.hpp"
@@ -160,7 +161,10 @@ StudyResult Modes::run(Context& context) {
     ModeSearch of_other_mesh;
     return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh));
   });
-  bars.tell_shaft(summary, context.machine.rotor);
+  std::set<int> shown;
+  for (const double speed : speeds)
+    for (std::size_t k = 0; k < station_at(speed).listed; ++k) shown.insert(station_at(speed).modes[k].id);
+  bars.tell(summary, context.machine.rotor, shown);
   ModeReduction reduction(system, walker, sampled);
   ModeTables tables(rotor::node_positions(system.train().rotor), rotor::node_masses(system.train().rotor),
                     options.condition);
