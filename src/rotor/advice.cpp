@@ -70,4 +70,19 @@ std::vector<std::string> advice(const Options& rotor) {
   return lines;
 }
 
+std::vector<std::string> impossible_inertias(const Options& rotor) {
+  constexpr double rounded = 1.01;
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < rotor.discs.size(); ++i) {
+    const Disc whole = resolved(rotor.discs[i], rotor.material);
+    if (whole.polar_inertia <= 2 * rounded * whole.diametral_inertia) continue;
+    lines.push_back(
+        fmt::format("rotor.discs.{}: a polar inertia of {:.4g} kg m^2 is more than twice the diametral one of {:.4g} "
+                    "kg m^2, which no body has (a thin disc has twice): is one of them missing, are they interchanged, "
+                    "is a unit wrong?",
+                    i + 1, whole.polar_inertia, whole.diametral_inertia));
+  }
+  return lines;
+}
+
 }  // namespace whirl::rotor

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Small decks with known answers: balance grades, values with a sign, the default film, labels of tables, run-ups under whirl,
-names of coefficients, tables over the speed.
+names of coefficients, tables over the speed, inertias that no body has.
 
 cases_deck.py PROGRAM SOURCE [LAUNCHER WORDS...]
 """
 import csv
+import json
 import math
 import subprocess
 import sys
@@ -175,9 +176,31 @@ def beyond(h):
            held["out"].get("warnings"))
 
 
+def discs(h):
+    """A polar inertia above twice the diametral one is no body's: said, and computed all the same. Negative ones are refused."""
+    deck = CASES / "overhung_grade.yaml"
+    disc = "rotor.discs=[{node: 1, mass: 10 kg, polar_inertia: %g kg m^2, diametral_inertia: %g kg m^2%s}]"
+    study = "studies=[{static: {name: s, speed: 100 rad/s}}]"
+    words = "rotor.discs.1: a polar inertia of 0.25 kg m^2 is more than twice the diametral one of 0.1 kg m^2"
+    told = say(h, "check", deck, "--set", study, disc % (0.25, 0.1, ""))
+    h.true("check says it", words in told, told)
+    told = say(h, "run", deck, "-o", h.work / "discs", "--set", study, disc % (0.25, 0.1, ""))
+    h.true("run says it", words in told, told)
+    summary = json.loads((h.work / "discs" / "summary.json").read_text())
+    h.true("and the summary", any(words in w for w in summary["warnings"]), str(summary["warnings"]))
+    told = say(h, "check", deck, "--set", study, disc % (0.25, 0, ""))
+    h.true("a missing one, too", "0.25 kg m^2 is more than twice the diametral one of 0 kg m^2" in told, told)
+    for polar, diametral, more in ((0.2, 0.1, ""), (0.157, 0.0781, ""), (0, 0.1, ""), (0, 0, ""), (0.05, 0, ", diameter: 0.4 m, thickness: 0.1 m")):
+        told = say(h, "check", deck, "--set", study, disc % (polar, diametral, more))
+        h.true(f"a body, {polar} and {diametral}{more}", "polar inertia" not in told, told)
+    for pair in ((-0.2, 0.1), (0.2, -0.1)):
+        told = say(h, "check", deck, "--set", study, disc % (*pair, ""), code=2)
+        h.true("a negative one has its place", "inertia' must be" in told, told)
+
+
 if __name__ == "__main__":
     harness = Harness(PROGRAM, SOURCE, LAUNCHER)
     CASES = harness.source / "tests/cases"
-    for case in (grades, signs, films, labels, whirl_amplitude, names, beyond):
+    for case in (grades, signs, films, labels, whirl_amplitude, names, beyond, discs):
         case(harness)
     harness.finish()

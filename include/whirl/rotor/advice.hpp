@@ -1,5 +1,5 @@
 #pragma once
-// What is unusual about a discretisation, though it can be computed.
+// What is unusual about a shaft and its discs, though it can be computed.
 
 #include <string>
 #include <vector>
@@ -12,5 +12,10 @@ namespace whirl::rotor {
 /// whose ratios differ by more than a factor of 4; lines begin with the path of the segment. Nothing for a rigid rotor.
 /// Source: Gavalas (2022), sec. 2.1.
 [[nodiscard]] std::vector<std::string> advice(const Options& rotor);
+
+/// A line for each disc whose polar moment of inertia exceeds twice its diametral one, both with those of its geometry:
+/// J_p <= 2 J_d for every body, with equality for a thin disc (sum m (x^2 + y^2) <= sum m (x^2 + y^2 + 2 z^2)). A
+/// hundredth is left to rounded numbers.
+[[nodiscard]] std::vector<std::string> impossible_inertias(const Options& rotor);
 
 }  // namespace whirl::rotor
