@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <span>
 
 #include "known.hpp"
+#include "paths.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/printable.hpp"
 #include "whirl/deck/description.hpp"
@@ -28,64 +30,6 @@ struct Placed {
 void relocate(Node& n, const Place& place) {
   n.place = n.key_place = place;
   for (Node& i : n.items) relocate(i, place);
-}
-
-// `path` split at the dots outside braces.
-std::vector<std::string> steps_of(std::string_view path) {
-  std::vector<std::string> steps(1);
-  int depth = 0;
-  for (const char c : path) {
-    depth += c == '{' ? 1 : c == '}' ? -1 : 0;
-    if (depth < 0 || depth > 1) break;
-    if (c == '.' && depth == 0)
-      steps.emplace_back();
-    else
-      steps.back() += c;
-  }
-  if (depth != 0) throw InputError("the braces of the path do not match");
-  if (std::count(path.begin(), path.end(), '{') > 8) throw InputError("the path has more than 8 braces");
-  if (std::find(steps.begin(), steps.end(), "") != steps.end()) throw InputError("a step of the path is empty");
-  return steps;
-}
-
-// The words that a step stands for: those between its braces, each with what stands around them.
-std::vector<std::string> alternatives(const std::string& step) {
-  const std::size_t open = step.find('{'), close = step.find('}');
-  if (open == std::string::npos) return {step};
-  std::vector<std::string> all;
-  std::string_view inside = std::string_view(step).substr(open + 1, close - open - 1);
-  while (true) {
-    const std::size_t comma = inside.find(',');
-    std::string_view word = inside.substr(0, comma);
-    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
-    while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
-    if (word.empty()) throw InputError(fmt::format("a name in '{}' is empty", step));
-    if (all.size() > 1000) throw InputError(fmt::format("'{}' stands for more than 1000 names", step));
-    for (const std::string& end : alternatives(step.substr(close + 1)))
-      all.push_back(step.substr(0, open) + std::string(word) + end);
-    if (comma == std::string_view::npos) return all;
-    inside.remove_prefix(comma + 1);
-  }
-}
-
-// `*` stands for any run of characters. A mismatch goes back to the last star only, whose run grows by one character.
-bool fits(std::string_view word, std::string_view pattern) {
-  std::size_t w = 0, p = 0, after_star = std::string_view::npos, run_end = 0;
-  while (w < word.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      after_star = ++p;
-      run_end = w;
-    } else if (p < pattern.size() && pattern[p] == word[w]) {
-      ++p;
-      ++w;
-    } else if (after_star != std::string_view::npos) {
-      p = after_star;
-      w = ++run_end;
-    } else {
-      return false;
-    }
-  }
-  return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
 // What a scalar asks for beyond replacing: nothing, a factor, or a sum.
@@ -170,6 +114,13 @@ public:
 
 private:
   [[nodiscard]] std::string walked() const { return fmt::format("{}", fmt::join(path_, ".")); }
+  [[nodiscard]] std::string whole_path(const std::string& step) const {
+    return walked() + (path_.empty() ? "" : ".") + step;
+  }
+  // The path that was meant where step i leads to no option.
+  [[nodiscard]] std::string hint_at(const std::string& step, std::size_t i) const {
+    return meant_path(structure_, *root_, path_, step, std::span(steps_).subspan(i + 1));
+  }
 
   void walk(Node& at, Node* parent, std::size_t i) {
     if (i == steps_.size()) return act(at, *parent);
@@ -192,7 +143,7 @@ private:
       if (step.find('*') != std::string::npos)
         each(at, step, i);
       else if (at.kind == Node::Kind::list)
-        enter(at, item(at, step), step, i);
+        enter(at, item(at, step, i), step, i);
       else
         enter(at, entry(at, step, i), step, i);
     }
@@ -215,15 +166,16 @@ private:
       throw InputError(path_.empty() ? fmt::format("no key fits '{}'", pattern)
                                      : fmt::format("nothing in '{}' fits '{}'", walked(), pattern));
     for (const std::string& name : names)
-      enter(at, at.kind == Node::Kind::list ? item(at, name) : entry(at, name, i), name, i);
+      enter(at, at.kind == Node::Kind::list ? item(at, name, i) : entry(at, name, i), name, i);
   }
 
-  [[nodiscard]] std::size_t item(const Node& at, const std::string& step) const {
+  [[nodiscard]] std::size_t item(const Node& at, const std::string& step, std::size_t i) const {
     std::size_t k = 0;
     const char* end = step.data() + step.size();
     const auto [last, code] = std::from_chars(step.data(), end, k);
     if (code != std::errc() || last != end || k < 1 || k > at.items.size())
-      throw InputError(fmt::format("'{}' has items 1 to {}, not '{}'", walked(), at.items.size(), step));
+      throw InputError(
+          fmt::format("'{}' has items 1 to {}, not '{}'{}", walked(), at.items.size(), step, hint_at(step, i)));
     return k - 1;
   }
 
@@ -240,11 +192,12 @@ private:
       std::vector<std::string> names;
       for (const Node& n : at.items) names.push_back(n.key);
       if (const std::string hint = did_you_mean(step, names); !hint.empty()) {
-        const std::string whole = walked() + (path_.empty() ? "" : ".") + step;
-        throw InputError(
-            fmt::format("there is no '{}'{}; a new one is given whole: --set {}={{...}}", step, hint, whole));
+        throw InputError(fmt::format("there is no '{}'{}; a new one is given whole: --set {}={{...}}", step, hint,
+                                     whole_path(step)));
       }
     }
+    if (const std::string hint = hint_at(step, i); !hint.empty())
+      throw InputError(fmt::format("there is no '{}'{}", whole_path(step), hint));
     require_key(step);
     Node& next = at.set(step, Node{});
     next.place = next.key_place = edit_.place;

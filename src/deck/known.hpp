@@ -11,10 +11,11 @@ namespace whirl::deck {
 /// What a description says about the value at a path.
 struct Leaf {
   const Spec* spec = nullptr;  ///< of a number, or of the numbers of a list or a range; null for all else
-  Node preset;                 ///< the value if the deck is silent, kind none if there is none
+  Node preset{};               ///< the value if the deck is silent, kind none if there is none
   /// The words for the option at the path, its key first; empty where the path leads to an item or into nothing known.
   /// The factors are those to the value of the key.
   std::vector<Alias> words{};
+  const Structure* map = nullptr;  ///< the options below the path, where it leads to a map of options
 };
 
 /// A codec that tells what it knows; a codec that does not derive from it is a value without parts.

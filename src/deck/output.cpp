@@ -287,6 +287,14 @@ std::string reference_text(const Structure& structure, std::string_view path, st
       out += entry_text(key, o);
   });
   if (out.empty()) {
+    // A path that leaves steps out.
+    const std::vector<std::string> asked = split_path(path);
+    for (const std::string& key : keys) {
+      auto next = asked.begin();
+      for (const std::string& step : split_path(key)) next += next != asked.end() && (step == *next || step == "NAME");
+      if (next == asked.end() && split_path(key).back() == asked.back())
+        throw core::InputError(fmt::format("there is no option '{}' (did you mean '{}'?)", path, key));
+    }
     keys.insert(keys.end(), words.begin(), words.end());
     throw core::InputError(fmt::format("there is no option '{}'{}", path, did_you_mean(path, keys)));
   }

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "known.hpp"
+#include "paths.hpp"
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 
@@ -235,7 +236,11 @@ const Node* given_part(const Node* given, const std::string& step) {
 }
 
 Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path, const Node* given) {
-  if (path.empty()) return {codec.spec(), preset ? codec.write(preset) : Node{}};
+  if (path.empty()) {
+    Leaf leaf{codec.spec(), preset ? codec.write(preset) : Node{}};
+    if (codec.step().empty()) leaf.map = codec.structure();
+    return leaf;
+  }
   const auto* knows = dynamic_cast<const Knows*>(&codec);
   if (!knows) throw InputError(fmt::format("'{}' leads into a value that has no parts", path.front()));
   return knows->leaf(preset, path, given);
@@ -254,7 +259,7 @@ bool applies_in(const Structure& s, const Option& o, const void* object, const N
 }  // namespace
 
 Leaf leaf_of(const Structure& s, const void* preset, std::span<const std::string> path, const Node* given) {
-  if (path.empty()) return {};
+  if (path.empty()) return {.map = &s};
   const void* object = preset ? preset : s.defaults.get();
   double factor = 1;
   const Option* o = s.option(path.front());
@@ -278,7 +283,7 @@ Access find_in(const Structure& structure, void* object, std::string_view path) 
   try {
     a = structure.find(object, steps);
   } catch (const InputError& e) {
-    throw InputError(fmt::format("'{}': {}", path, e.what()));
+    throw InputError(fmt::format("'{}': {}{}", path, e.what(), meant_path(structure, structure.write(object), steps)));
   }
   if (!a.value) throw InputError(fmt::format("'{}' is no real number that could be varied", path));
   return a;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Small decks with known answers: balance grades, values with a sign, the default film, labels of tables, run-ups under whirl,
-names of coefficients, tables over the speed, inertias that no body has.
+names of coefficients, tables over the speed, inertias that no body has, paths that leave a step out.
 
 cases_deck.py PROGRAM SOURCE [LAUNCHER WORDS...]
 """
@@ -198,9 +198,31 @@ def discs(h):
         h.true("a negative one has its place", "inertia' must be" in told, told)
 
 
+def paths(h):
+    """A path that leaves a step out, the kind of a study above all, is answered with the whole one; so are sweeps and branches."""
+    deck = CASES / "overhung_grade.yaml"
+    base = "studies=[{frequency_response: {name: f, speed: 0 rad/s, range: {from: 10 rad/s, to: 100 rad/s}, inputs: [{node: 1, direction: x}], outputs: [{node: 1, direction: x}]}}]"
+    for path, meant in (("studies.1.range={from: 1 rad/s, to: 2 rad/s}", "studies.1.frequency_response.range"), ("studies.1.rnge.from=1 rad/s", "studies.1.frequency_response.range.from"),
+                        ("studies.*.points=3", "studies.1.frequency_response.points"), ("studies.points=3", "studies.1.frequency_response.points"),
+                        ("bearings.a.stiffness=1 N/m", "bearings.a.film.stiffness"), ("modulus=200 GPa", "rotor.material.modulus")):
+        told = say(h, "check", deck, "--set", base, path, code=2)
+        h.true(f"{path}", f"(did you mean '{meant}'?)" in told, told)
+    sweep = "studies=[{static: {name: s, speed: 100 rad/s}}, {sweep: {of: [s], %s}}]"
+    for what in ("grid: {studies.1.speed: [100 rad/s, 200 rad/s]}", "variants: {b: {studies.1.speed: 200 rad/s}}"):
+        told = say(h, "check", deck, "--set", sweep % what, code=2)
+        h.true(what, "(did you mean 'studies.1.static.speed'?)" in told, told)
+    branch = "studies=[{equilibrium_branch: {speed: 100 rad/s, parameter: bearings.a.stiffness, range: {from: 1 MN/m, to: 2 MN/m}}}]"
+    told = say(h, "check", deck, "--set", branch, code=2)
+    h.true("the parameter of a branch", "(did you mean 'bearings.a.film.stiffness'?)" in told, told)
+    told = say(h, "describe", "rotor.modulus", code=2)
+    h.true("describe", "(did you mean 'rotor.material.modulus'?)" in told, told)
+    told = say(h, "check", deck, "--set", base, "studies.1.frequency_response.pionts=3", code=2)
+    h.true("a slip of the pen stays one", "did you mean 'points'?" in told, told)
+
+
 if __name__ == "__main__":
     harness = Harness(PROGRAM, SOURCE, LAUNCHER)
     CASES = harness.source / "tests/cases"
-    for case in (grades, signs, films, labels, whirl_amplitude, names, beyond, discs):
+    for case in (grades, signs, films, labels, whirl_amplitude, names, beyond, discs, paths):
         case(harness)
     harness.finish()
