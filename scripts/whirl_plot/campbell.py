@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, UNDAMPED, WARN, levels, runs, save, speed_axis
 
-LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4))}
+LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4)), "either": (0, (4, 1.4, 1.2, 1.4, 1.2, 1.4))}
 EITHER = "either: equal modes, any combination of which is a mode"
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
 OVERDAMPED = 3.0  # log. decrement of modes that lose 95 % of their amplitude in a turn
@@ -53,6 +53,11 @@ def stretches(speed, frequency, every, full):
         start = k
 
 
+def senses(whirl):
+    """The sense of a track between each speed and the next: where equal modes part, each has the one that it has from there on."""
+    return [after if before == "either" else before for before, after in zip(whirl, whirl[1:])]
+
+
 def draw_lines(axis, x, y, decrement, whirl):
     """One polyline per stretch of one whirl and one class of damping, so that dashes run through."""
     if len(x) == 1:
@@ -60,8 +65,7 @@ def draw_lines(axis, x, y, decrement, whirl):
             axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
         return
     worst = np.minimum(decrement[:-1], decrement[1:])
-    # Where equal modes part, each has the sense that it has from there on.
-    sense = [after if before == "either" else before for before, after in zip(whirl, whirl[1:])]
+    sense = senses(whirl)
     for start, stop in runs(list(zip(sense, map(colour_of, worst), worst > OVERDAMPED))):
         heavy = worst[start] > OVERDAMPED
         axis.plot(x[start:stop + 1], y[start:stop + 1], color=LIGHT if heavy else colour_of(worst[start]),
@@ -145,7 +149,7 @@ def draw(study):
         handles.append(Line2D([], [], color=UNDAMPED, label="undamped"))
     if any(np.any(m[3] > OVERDAMPED) for m in modes):
         handles.append(Line2D([], [], color=LIGHT, label=f"above {OVERDAMPED:.0f}"))
-    occurring = {w for m in modes for w in m[4]}
+    occurring = {w for m in modes for w in senses(m[4])}
     handles += [Line2D([], [], color=GREY, linestyle=s, label=w) for w, s in LINES.items() if w in occurring]
     if len(critical):
         handles += [Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", label="critical speed")]
@@ -164,5 +168,5 @@ def draw(study):
     bottom.set_title("Damping, unstable below zero" + (f"; {hidden} modes are damped more than shown" if hidden else ""))
     label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1] and m[3][-1] <= OVERDAMPED])
     label_modes(bottom, ends[1] * to_speed, [(m[0], m[3][-1]) for m in modes if m[1][-1] == ends[1]])
-    words = with_either(f"numbers at the right: modes; sense of whirl by kinetic energy; {ROTATION}", [m[4] for m in modes])
+    words = with_either(f"numbers at the right: modes; sense of whirl by kinetic energy; {ROTATION}", [occurring])
     return save(figure, study, "campbell", words, handles, 7)

@@ -115,7 +115,8 @@ void describe(deck::Description<Segment>& d) {
 void describe(deck::Description<Disc>& d) {
   d.add("node", &Disc::node, positive, "node that carries the disc").required();
   d.add("mass", &Disc::mass, "kg", non_negative, "mass, beside that of the geometry").continuable();
-  d.add("polar_inertia", &Disc::polar_inertia, "kg m^2", non_negative, "moment of inertia about the shaft axis");
+  d.add("polar_inertia", &Disc::polar_inertia, "kg m^2", non_negative,
+        "moment of inertia about the shaft axis; of a body at most twice the diametral one");
   d.add("diametral_inertia", &Disc::diametral_inertia, "kg m^2", non_negative,
         "moment of inertia about a diameter through the centre of mass");
   d.add("outer_diameter", &Disc::outer_diameter, "m", non_negative, "outer diameter; 0: no geometry").alias("diameter");

@@ -64,15 +64,16 @@ std::optional<std::array<Combination, 2>> extremes_of_whirl(const std::vector<st
                                                             const std::vector<double>& mass) {
   using Complex = std::complex<double>;
   constexpr double dependent = 1e-6;  // square of the sine of the angle between the shapes
-  const std::size_t n = mass.size();
+  const std::size_t n = a.size() / 2;
   const std::array<const std::vector<Complex>*, 2> shapes{&a, &b};
   std::array<std::array<Complex, 2>, 2> w{}, e{};
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j)
       for (std::size_t k = 0; k < n; ++k) {
+        const double m = mass.empty() ? 1.0 : mass[k];
         const Complex x = std::conj((*shapes[i])[k]), y = std::conj((*shapes[i])[n + k]);
-        e[i][j] += mass[k] * (x * (*shapes[j])[k] + y * (*shapes[j])[n + k]) / 2.0;
-        w[i][j] += mass[k] * (y * (*shapes[j])[k] - x * (*shapes[j])[n + k]) / Complex(0, 2);
+        e[i][j] += m * (x * (*shapes[j])[k] + y * (*shapes[j])[n + k]) / 2.0;
+        w[i][j] += m * (y * (*shapes[j])[k] - x * (*shapes[j])[n + k]) / Complex(0, 2);
       }
   const double e0 = e[0][0].real(), e1 = e[1][1].real(), w0 = w[0][0].real(), w1 = w[1][1].real();
   const double area = e0 * e1 - std::norm(e[0][1]);

@@ -165,6 +165,12 @@ def campbell_lines(folder):
                 x = np.linspace(*line.get_xdata()[[0, -1]], 400)
                 curve = top.transData.transform(np.column_stack([x, np.interp(x, line.get_xdata(), line.get_ydata())]))
                 assert np.hypot(*(curve - place).T).min() > 7, f"{words} stands on a line"  # pixels
+    def at_rest(root):
+        fill(root)
+        whirl = root["studies/modes/spectrum/whirl"]
+        whirl[0] = "either"
+    top, first = mode(folder, at_rest, 150.0)
+    assert len(first) == 1 and len(first[0].get_xdata()) == 6 and first[0].get_linestyle() == "-", "equal modes that part are one line of their later sense"
     second = mode(folder, lambda root: fill(root, False), 300.0)[1]
     assert sorted(len(line.get_xdata()) for line in second) == [2, 3], "a mode that was not found"
 

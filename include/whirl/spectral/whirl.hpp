@@ -36,7 +36,7 @@ struct WhirlEnergy {
 using Combination = std::array<std::complex<double>, 2>;
 [[nodiscard]] std::optional<std::array<Combination, 2>> extremes_of_whirl(const std::vector<std::complex<double>>& a,
                                                                           const std::vector<std::complex<double>>& b,
-                                                                          const std::vector<double>& mass);
+                                                                          const std::vector<double>& mass = {});
 
 /// How each node turns: sin of the phase by which y lags behind x, weighted by both, 2 Im(conj(y) x)/(|x|^2 + |y|^2) in
 /// [-1, 1]: 1 on a forward circle, -1 on a backward one, 0 on a line; 0 for a node that moves less than 1e-6 of the one

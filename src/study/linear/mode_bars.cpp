@@ -115,8 +115,9 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", none);
   for (std::size_t i = 0; i < on_meshes.size(); ++i) {
     std::vector<double>& found = on_meshes[i];
-    const std::string mesh =
-        i == meshes.size() ? "the shaft with every segment cut in two" : "another mesh of the films";
+    const bool of_shaft = i == meshes.size();
+    const char* const mesh = of_shaft ? "the shaft with every segment cut in two" : "another mesh of the films";
+    const char* const advice = of_shaft ? "cut the segments shorter" : "give the films more cells";
     const bool answered = found.front() != 0;
     found.erase(found.begin());
     const std::string failed = answered ? "" : std::string(found.begin(), found.end());
@@ -124,9 +125,7 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
     for (std::size_t s = 0, k = 0; s < sampled.size(); ++s)
       for (std::size_t m = 0; m < sampled[s].ids.size(); ++m, k += 3) {
         if (m >= sampled[s].listed || (answered && !std::isnan(found[k]))) continue;
-        without_[answered ? fmt::format("{} has none like them; cut the segments shorter, or ask for fewer modes "
-                                        "('count')",
-                                        mesh)
+        without_[answered ? fmt::format("{} has none like them; {}, or ask for fewer modes ('count')", mesh, advice)
                           : fmt::format("{} gave no modes ({})", mesh, failed)]
             .insert(sampled[s].ids[m]);
       }
@@ -149,12 +148,15 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
 }
 
 void ModeBars::tell(io::StudySummary& summary, const rotor::Options& rotor, const std::set<int>& shown) const {
-  auto without = without_;
+  std::map<std::string, std::set<int>> without;
+  for (const auto& [why, ids] : without_)
+    std::ranges::set_intersection(ids, shown, std::inserter(without[why], without[why].end()));
   for (const int id : shown)
     if (any_ && !of_.contains(id)) without["it is at none of the speeds at which other meshes are computed"].insert(id);
   for (const auto& [why, ids] : without)
-    summary.warnings.push_back(
-        fmt::format("no error bars of modes {}{}: {}", runs_of(ids), several_ ? " at some speeds" : "", why));
+    if (!ids.empty())
+      summary.warnings.push_back(
+          fmt::format("no error bars of modes {}{}: {}", runs_of(ids), several_ ? " at some speeds" : "", why));
   if (shaft_error_ == 0) return;
   summary.set("shaft_mesh.largest_error", shaft_error_, "1");
   warn_of_shaft_mesh(summary, rotor, {{"the frequencies of these modes", shaft_error_, most_of_frequency}});
