@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "planar.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/symmetric.hpp"
 #include "whirl/rotor/dense.hpp"
 #include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -78,17 +78,14 @@ std::vector<double> critical_speeds(const Options& options, const std::vector<Sp
     inertia = k;
     inertia << x.mass, -x.gyroscopic, -x.gyroscopic, y.mass;
   }
-  // The eigenvalue solver factorises K and does not say whether that went well.
-  (void)definite(k, "critical speeds: the stiffness of the shaft on its springs");
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
-      inertia, k, isotropic ? Eigen::EigenvaluesOnly : Eigen::ComputeEigenvectors);
+  const auto pairs = core::symmetric_pairs(std::move(inertia), std::move(k),
+                                           "critical speeds: the stiffness of the shaft on its springs", !isotropic);
   std::vector<double> out;
-  if (solver.info() != Eigen::Success) throw core::NotConverged("critical speeds: no eigenvalues");
-  const Eigen::VectorXd& inverse = solver.eigenvalues();  // ascending
+  const Eigen::VectorXd& inverse = pairs.values;
   const double rounding = 1e-14 * inverse.cwiseAbs().maxCoeff();
   const auto turns_so = [&](Index i) {
     if (isotropic) return true;
-    const Eigen::VectorXd u = solver.eigenvectors().col(i).head(n), v = solver.eigenvectors().col(i).tail(n);
+    const Eigen::VectorXd u = pairs.vectors.col(i).head(n), v = pairs.vectors.col(i).tail(n);
     const double across = u.dot(x.mass * v), size = u.dot(x.mass * u) + v.dot(x.mass * v);
     return (across >= -1e-9 * size) == (whirl == Whirl::forward);
   };

@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/symmetric.hpp"
 #include "whirl/rotor/element.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -82,15 +82,14 @@ LineModes line_modes(const Options& o, Line line, const std::vector<int>& held, 
   LineModes out;
   if (free.empty()) return out;
   const Chain c = chain_of(o, line);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(c.stiffness(free, free),
-                                                                         c.inertia(free, free));
-  if (solver.info() != Eigen::Success) throw core::NotConverged("modes of torsion or axial motion");
+  const auto pairs = core::symmetric_pairs(c.stiffness(free, free), c.inertia(free, free),
+                                           "modes of torsion or axial motion: the inertia");
   // Held nowhere, the shaft turns or slides as a whole: its one mode that does not vibrate is left out.
   for (Eigen::Index k = held.empty() ? 1 : 0;
-       k < solver.eigenvalues().size() && static_cast<int>(out.frequencies.size()) < count; ++k) {
-    out.frequencies.push_back(std::sqrt(solver.eigenvalues()(k)));
+       k < pairs.values.size() && static_cast<int>(out.frequencies.size()) < count; ++k) {
+    out.frequencies.push_back(std::sqrt(pairs.values(k)));
     Eigen::VectorXd shape = Eigen::VectorXd::Zero(n_nodes(o));
-    shape(free) = solver.eigenvectors().col(k);
+    shape(free) = pairs.vectors.col(k);
     Eigen::Index largest = 0;
     shape.cwiseAbs().maxCoeff(&largest);
     shape /= shape(largest);

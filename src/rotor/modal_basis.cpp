@@ -1,5 +1,4 @@
 // Real modes of a shaft at rest as a basis whose coordinates hold the masters.
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "reduction.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/symmetric.hpp"
 
 namespace whirl::rotor {
 
@@ -77,15 +77,19 @@ PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction) {
   PlanarBasis basis;
   basis.offset = Eigen::VectorXd::Zero(end - begin);
   basis.rows.resize(end - begin, modes.rows.cols());
-  Eigen::MatrixXd moved = modes.rows * at_masters.completeOrthogonalDecomposition().pseudoInverse();
+  // The pseudo-inverse of at_masters, of full rank: Q (R^T)^-1 P^T.
+  const Eigen::MatrixXd upper = qr.matrixR().topLeftCorner(n, n).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd permuted = qr.colsPermutation().transpose();
+  Eigen::MatrixXd moved =
+      modes.rows * (q.leftCols(n) * upper.transpose().triangularView<Eigen::Lower>().solve(permuted)).eval();
   if (held.cols() > 0) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> own(projected(k, held),
-                                                                        projected(planar.mass.get(), held));
+    const Eigen::MatrixXd stiffness = projected(k, held), mass = projected(planar.mass.get(), held);
+    core::SymmetricPairs own;
     core::agree(comm, [&] {
-      if (own.info() != Eigen::Success || !(own.eigenvalues()(0) > 0))
-        throw core::NotConverged(std::string(held_stiffness) + " is not positive definite");
+      own = core::symmetric_pairs(stiffness, mass, "the mass of the shaft with its masters held");
+      if (!(own.values(0) > 0)) throw core::NotConverged(std::string(held_stiffness) + " is not positive definite");
     });
-    Eigen::MatrixXd inner = held * own.eigenvectors();
+    Eigen::MatrixXd inner = held * own.vectors;
     // The sign by a generic direction, as the same shaft on other ranks.
     Eigen::RowVectorXd generic = Eigen::RowVectorXd::Zero(inner.cols());
     for (Eigen::Index r = 0; r < inner.rows(); ++r)
@@ -96,7 +100,7 @@ PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction) {
     Eigen::MatrixXd all(moved.rows(), n + inner.cols());
     all << moved, inner;
     const Eigen::MatrixXd coupling = projected(k, all).bottomLeftCorner(inner.cols(), n);
-    moved -= inner * own.eigenvalues().cwiseInverse().asDiagonal() * coupling;
+    moved -= inner * own.values.cwiseInverse().asDiagonal() * coupling;
     basis.rows.rightCols(inner.cols()) = inner;
   }
   // What is a master moves by itself, without rounding.

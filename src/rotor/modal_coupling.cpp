@@ -2,10 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "planar.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/symmetric.hpp"
 #include "whirl/rotor/dense.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -20,9 +19,9 @@ GyroscopicCoupling gyroscopic_coupling(const Options& options, const std::vector
       throw core::InputError(fmt::format("rotor: node {} is not in 1..{}", node, n_nodes(options)));
     k(2 * (node - 1), 2 * (node - 1)) += support;
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> rest(k, dense(planar.mass.get()));
-  const Eigen::MatrixXd& v = rest.eigenvectors();
-  return {rest.eigenvalues().cwiseMax(0).cwiseSqrt(), v.transpose() * dense(planar.gyroscopic.get()) * v};
+  const auto rest = core::symmetric_pairs(std::move(k), dense(planar.mass.get()), "the mass of the shaft");
+  const Eigen::MatrixXd& v = rest.vectors;
+  return {rest.values.cwiseMax(0).cwiseSqrt(), v.transpose() * dense(planar.gyroscopic.get()) * v};
 }
 
 }  // namespace whirl::rotor

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,6 +14,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/from_options.hpp"
+#include "whirl/spectral/dense.hpp"
 
 namespace whirl::spectral {
 namespace {
@@ -160,12 +160,11 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const ScaledPencil& sc
   return out;
 }
 
-// Of a dense matrix, by Eigen.
-Eigen::EigenSolver<Eigen::MatrixXd> solve_small(const Eigen::MatrixXd& matrix, bool vectors) {
+Eigenpairs solve_small(const Eigen::MatrixXd& matrix, bool vectors) {
   if (!matrix.allFinite()) throw core::NotConverged("eigenvalues of a matrix that is not finite");
-  Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, vectors);
-  if (solver.info() != Eigen::Success) throw core::NotConverged("the eigenvalues did not converge");
-  return solver;
+  Eigenpairs out = real_eigenpairs(matrix, vectors);
+  if (!out.values.allFinite()) throw core::NotConverged("the eigenvalues did not converge");
+  return out;
 }
 
 }  // namespace
@@ -257,16 +256,15 @@ Eigen::VectorXcd Eigenpairs::nearest(Complex value) const {
 }
 
 Eigenpairs eigenpairs(const Eigen::MatrixXd& matrix) {
-  const auto solver = solve_small(matrix, true);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  return solve_small(matrix, true);
 }
 
 std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix) {
   const auto by_modulus = [](Complex a, Complex b) { return std::abs(a) > std::abs(b); };
   // A few states: setting up an EPS costs more than all the rest of a cycle.
   if (matrix.rows() <= 16) {
-    const auto solver = solve_small(matrix, false);
-    std::vector<Complex> out(solver.eigenvalues().begin(), solver.eigenvalues().end());
+    const Eigen::VectorXcd values = solve_small(matrix, false).values;
+    std::vector<Complex> out(values.begin(), values.end());
     std::stable_sort(out.begin(), out.end(), by_modulus);
     return out;
   }

@@ -1,10 +1,11 @@
 #include "spectral/rounding.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "whirl/spectral/dense.hpp"
 
 namespace whirl::spectral {
 namespace {
@@ -143,7 +144,7 @@ DensePencil::Conditioning DensePencil::conditioning() const {
     Eigen::MatrixXcd x(a_.rows(), static_cast<Eigen::Index>(alike.size()));
     for (std::size_t i = 0; i < alike.size(); ++i)
       x.col(static_cast<Eigen::Index>(i)) = vectors_[alike[i]].normalized();
-    const Eigen::VectorXd sizes = Eigen::JacobiSVD<Eigen::MatrixXcd>(x).singularValues();
+    const Eigen::VectorXd sizes = singular_values(std::move(x));
     out.vectors[k] = static_cast<int>((sizes.array() > 1e-3 * sizes(0)).count());
   }
   return out;

@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/symmetric.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -16,9 +16,9 @@ void quadrature(int m, Points points, Eigen::VectorXd& c, Eigen::VectorXd& weigh
   Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(m, m);
   for (int k = 1; k < m; ++k) jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1);
   if (points == Points::radau) jacobi(m - 1, m - 1) = m / (2.0 * m - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobi);
-  c = (eigen.eigenvalues().array() + 1) / 2;
-  weight = eigen.eigenvectors().row(0).array().square().matrix().transpose();
+  const core::SymmetricPairs pairs = core::symmetric_pairs(std::move(jacobi), "the recurrence of Legendre polynomials");
+  c = (pairs.values.array() + 1) / 2;
+  weight = pairs.vectors.row(0).array().square().matrix().transpose();
   if (points == Points::radau) c(m - 1) = 1;
 }
 

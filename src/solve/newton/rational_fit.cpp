@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "whirl/spectral/complex_dense.hpp"
+#include "whirl/spectral/dense.hpp"
 
 namespace whirl::solve {
 

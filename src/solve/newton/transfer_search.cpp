@@ -3,7 +3,7 @@
 #include <Eigen/SparseLU>
 #include <limits>
 
-#include "whirl/spectral/complex_dense.hpp"
+#include "whirl/spectral/dense.hpp"
 
 namespace whirl::solve {
 

@@ -15,7 +15,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/shaft.hpp"
-#include "whirl/spectral/complex_dense.hpp"
+#include "whirl/spectral/dense.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {

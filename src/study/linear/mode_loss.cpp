@@ -11,7 +11,7 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/spectral/complex_dense.hpp"
+#include "whirl/spectral/dense.hpp"
 
 namespace whirl::study {
 namespace {

@@ -1,12 +1,12 @@
 #include <fmt/core.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "study/common.hpp"
 #include "study/motion/linearity_run.hpp"
 #include "whirl/io/table.hpp"
+#include "whirl/spectral/dense.hpp"
 
 namespace whirl::study {
 namespace {
@@ -26,7 +26,7 @@ Eigen::Matrix2cd matrix_of(const std::vector<double>& flat) {
 }
 
 double gain_of(const Eigen::Matrix2cd& g) {
-  return Eigen::JacobiSVD<Eigen::Matrix2cd>(g).singularValues()(0);
+  return spectral::singular_values(Eigen::MatrixXcd(g))(0);
 }
 
 struct Resonance {

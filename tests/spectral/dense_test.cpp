@@ -1,6 +1,6 @@
 // Decompositions by LAPACK against their definitions and values known in closed form.
 
-#include "whirl/spectral/complex_dense.hpp"
+#include "whirl/spectral/dense.hpp"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ double off(const MatrixXcd& a, const MatrixXcd& b) {
 
 }  // namespace
 
-TEST(ComplexDense, SingularValuesAndVectorsGiveTheMatrixAgain) {
+TEST(Dense, SingularValuesAndVectorsGiveTheMatrixAgain) {
   for (const auto& [rows, columns] : {std::pair<Index, Index>{9, 4}, {4, 9}, {5, 5}, {1, 1}}) {
     const MatrixXcd a = some(rows, columns);
     const spectral::Svd s = spectral::svd(a);
@@ -43,7 +43,7 @@ TEST(ComplexDense, SingularValuesAndVectorsGiveTheMatrixAgain) {
   }
 }
 
-TEST(ComplexDense, RealMatricesHaveTheirSingularValues) {
+TEST(Dense, RealMatricesHaveTheirSingularValues) {
   Eigen::MatrixXd a(2, 2);
   a << 3, 0, 4, 5;  // a a^T has the eigenvalues 45 and 5
   const Eigen::VectorXd sizes = spectral::singular_values(a);
@@ -51,7 +51,7 @@ TEST(ComplexDense, RealMatricesHaveTheirSingularValues) {
   EXPECT_NEAR(sizes(1), std::sqrt(5.0), 1e-13);
 }
 
-TEST(ComplexDense, TheLeastDirectionIsNullWhereThereAreFewerRowsThanColumns) {
+TEST(Dense, TheLeastDirectionIsNullWhereThereAreFewerRowsThanColumns) {
   const MatrixXcd wide = some(3, 5), tall = some(7, 3);
   const Eigen::VectorXcd x = spectral::least_direction(wide), y = spectral::least_direction(tall);
   EXPECT_NEAR(x.norm(), 1, 1e-13);
@@ -60,7 +60,7 @@ TEST(ComplexDense, TheLeastDirectionIsNullWhereThereAreFewerRowsThanColumns) {
   EXPECT_NEAR((tall * y).norm(), spectral::svd(tall).sizes(2), 1e-13 * tall.norm());
 }
 
-TEST(ComplexDense, EigenpairsOfAComplexMatrix) {
+TEST(Dense, EigenpairsOfAComplexMatrix) {
   const MatrixXcd a = some(6, 6);
   const spectral::Eigenpairs pairs = spectral::complex_eigenpairs(a);
   EXPECT_LT(off(a * pairs.vectors, pairs.vectors * pairs.values.asDiagonal()), 1e-12 * a.norm());
@@ -69,10 +69,26 @@ TEST(ComplexDense, EigenpairsOfAComplexMatrix) {
   for (Index k = 1; k < 6; ++k) EXPECT_LE(pairs.values(k - 1).real(), pairs.values(k).real());
 }
 
-TEST(ComplexDense, WhatIsNotFiniteHasNoAnswer) {
+TEST(Dense, WhatIsNotFiniteHasNoAnswer) {
   MatrixXcd a = some(4, 4);
   a(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(spectral::svd(a).sizes(0)));
   EXPECT_TRUE(std::isnan(spectral::least_direction(a)(0).real()));
   EXPECT_TRUE(std::isnan(spectral::complex_eigenpairs(a).values(0).real()));
+}
+
+TEST(Dense, RealMatricesHaveTheirEigenpairs) {
+  // A turn by 0.3 in one plane, which has a pair, beside a real eigenvalue.
+  Eigen::MatrixXd a(3, 3);
+  a << std::cos(0.3), -std::sin(0.3), 1, std::sin(0.3), std::cos(0.3), 2, 0, 0, -4;
+  const spectral::Eigenpairs pairs = spectral::real_eigenpairs(a, true);
+  for (const Complex exact : {std::polar(1.0, 0.3), std::polar(1.0, -0.3), Complex(-4)})
+    EXPECT_LT((pairs.values.array() - exact).abs().minCoeff(), 1e-14);
+  for (Index k = 0; k < 3; ++k) {
+    EXPECT_NEAR(pairs.vectors.col(k).norm(), 1, 1e-14);
+    EXPECT_LT((a.cast<Complex>() * pairs.vectors.col(k) - pairs.values(k) * pairs.vectors.col(k)).norm(), 1e-14);
+  }
+  EXPECT_EQ(spectral::real_eigenpairs(a, false).vectors.size(), 0);
+  a(0, 0) = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isnan(spectral::real_eigenpairs(a, true).values(0).real()));
 }

@@ -1,4 +1,4 @@
-#include "whirl/spectral/complex_dense.hpp"
+#include "whirl/spectral/dense.hpp"
 
 #include <algorithm>
 #include <complex>
@@ -12,6 +12,8 @@ void zgesdd_(const char* job, const int* m, const int* n, std::complex<double>* 
              std::complex<double>* work, const int* lwork, double* rwork, int* iwork, int* info);
 void dgesdd_(const char* job, const int* m, const int* n, double* a, const int* lda, double* s, double* u,
              const int* ldu, double* vt, const int* ldvt, double* work, const int* lwork, int* iwork, int* info);
+void dgeev_(const char* left, const char* right, const int* n, double* a, const int* lda, double* re, double* im,
+            double* vl, const int* ldvl, double* vr, const int* ldvr, double* work, const int* lwork, int* info);
 void zgeev_(const char* left, const char* right, const int* n, std::complex<double>* a, const int* lda,
             std::complex<double>* w, std::complex<double>* vl, const int* ldvl, std::complex<double>* vr,
             const int* ldvr, std::complex<double>* work, const int* lwork, double* rwork, int* info);
@@ -89,6 +91,34 @@ Eigen::VectorXcd least_direction(MatrixXcd a) {
   MatrixXcd u, vt;
   (void)decompose(a.rows() < a.cols() ? 'A' : 'S', a, u, vt);
   return vt.bottomRows(1).adjoint();
+}
+
+Eigenpairs real_eigenpairs(MatrixXd a, bool vectors) {
+  const int n = static_cast<int>(a.rows()), ldv = vectors ? std::max(1, n) : 1;
+  const Index columns = vectors ? n : 0;
+  Eigenpairs out{Eigen::VectorXcd(n), MatrixXcd(columns, columns)};
+  if (n == 0) return out;
+  VectorXd re(n), im(n);
+  MatrixXd v(columns, columns);
+  const bool found = a.allFinite() && with_workspace<double>([&](double* work, const int* size, int* info) {
+                       dgeev_("N", vectors ? "V" : "N", &n, a.data(), &n, re.data(), im.data(), nullptr, &ldv, v.data(),
+                              &ldv, work, size, info);
+                     });
+  if (!found) re.setConstant(nothing);
+  for (Index k = 0; k < n; ++k) out.values(k) = Complex(re(k), im(k));
+  for (Index k = 0; k < columns; ++k) {
+    // The real and the imaginary part of a pair's first vector stand side by side.
+    if (im(k) == 0 || !found) {
+      out.vectors.col(k) = v.col(k).cast<Complex>();
+      continue;
+    }
+    for (Index r = 0; r < n; ++r) {
+      out.vectors(r, k) = Complex(v(r, k), v(r, k + 1));
+      out.vectors(r, k + 1) = std::conj(out.vectors(r, k));
+    }
+    ++k;
+  }
+  return out;
 }
 
 Eigenpairs complex_eigenpairs(MatrixXcd a) {

@@ -21,6 +21,8 @@ struct Svd {
 /// x of length one with the least |A x|; one of those with A x = 0 where A has fewer rows than columns.
 [[nodiscard]] Eigen::VectorXcd least_direction(Eigen::MatrixXcd a);
 
+/// Eigenvalues and, with `vectors`, right eigenvectors (columns of length one) of a real matrix, in no order.
+[[nodiscard]] Eigenpairs real_eigenpairs(Eigen::MatrixXd a, bool vectors);
 /// Eigenvalues and right eigenvectors of a complex matrix, by rising real part of the eigenvalue.
 [[nodiscard]] Eigenpairs complex_eigenpairs(Eigen::MatrixXcd a);
 
