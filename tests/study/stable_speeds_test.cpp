@@ -17,7 +17,7 @@ std::vector<double> speeds(int n) {
 
 TEST(StableSpeeds, TheBorderIsFoundBetweenNeighboursByFewCounts) {
   std::size_t asked = 0;
-  const StableSpeeds stable(speeds(1000), {}, [&](const std::vector<double>& at) {
+  const StableSpeeds stable(speeds(1000), few_speeds(speeds(1000)), [&](const std::vector<double>& at) {
     asked += at.size();
     std::vector<int> out;
     for (const double s : at) out.push_back(s < 637 ? 0 : s < 900 ? 2 : 4);
@@ -42,7 +42,8 @@ TEST(StableSpeeds, TheBorderIsFoundBetweenNeighboursByFewCounts) {
 
 TEST(StableSpeeds, WhatIsNotKnownIsUndetermined) {
   const auto all = [](int number) {
-    return StableSpeeds(speeds(5), {}, [number](const auto& at) { return std::vector<int>(at.size(), number); });
+    return StableSpeeds(speeds(5), few_speeds(speeds(5)),
+                        [number](const auto& at) { return std::vector<int>(at.size(), number); });
   };
   io::StudySummary stable, unknown, unstable;
   put_verdict(stable, all(0), "rad/s");
@@ -63,7 +64,12 @@ TEST(StableSpeeds, WhatMattersIsAlwaysCounted) {
     for (const double s : at) out.push_back(s > 500 && s < 514 ? 2 : 0);
     return out;
   };
-  const StableSpeeds seen(speeds(1000), {507}, window), unseen(speeds(1000), {900}, window);
+  const auto with = [&](double speed) {
+    std::vector<double> first = few_speeds(speeds(1000));
+    first.push_back(speed);
+    return StableSpeeds(speeds(1000), first, window);
+  };
+  const StableSpeeds seen = with(507), unseen = with(900);
   EXPECT_EQ(seen.at(501), 2);
   EXPECT_EQ(seen.at(513), 2);
   EXPECT_EQ(seen.at(500), 0);

@@ -19,6 +19,7 @@
 #include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/linear/mode_bars.hpp"
+#include "study/linear/resonances.hpp"
 #include "study/linear/transfer_points.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
@@ -96,9 +97,17 @@ public:
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
-  // What grows about the equilibrium, packed; nothing if that could not be computed.
-  std::vector<double> growing() {
-    return answer_of([&] { return packed(growth_at(system_, walker_.at(options_.speed.value))); });
+  // What grows about the equilibrium, packed, behind its length; then all eigenvalues. Nothing if these could not be
+  // computed.
+  std::vector<double> eigenvalues() {
+    return answer_of([&] {
+      const solve::Stability found = equilibrium_stability(system_, walker_.at(options_.speed.value));
+      const std::vector<double> growth = packed(growth_of(found));
+      std::vector<double> all{static_cast<double>(growth.size())};
+      all.insert(all.end(), growth.begin(), growth.end());
+      append(all, found.values);
+      return all;
+    });
   }
 
 private:
@@ -231,6 +240,19 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   return out;
 }
 
+// The frequencies are those that the user gives: where they pass over a resonance, which answers more than the ones
+// beside it, the largest answers are too small.
+void warn_of_passed_over(io::StudySummary& summary, const std::vector<std::string>& words) {
+  constexpr std::size_t most = 5;
+  if (words.empty()) return;
+  const std::size_t n = std::min(most, words.size());
+  summary.warnings.push_back(fmt::format(
+      "the frequencies pass over resonances narrower than their distance: {}{}. The largest answers are those "
+      "computed: more points, or a range about a resonance, show it",
+      fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(n), ", "),
+      words.size() > n ? fmt::format(", and {} more", words.size() - n) : ""));
+}
+
 }  // namespace
 
 StudyResult FrequencyResponse::run(Context& context) {
@@ -277,13 +299,27 @@ StudyResult FrequencyResponse::run(Context& context) {
     }
   }
 
-  // Equilibria know of no loss factor: of such shafts nothing is asked.
+  const std::vector<double> eigen =
+      distribute(
+          layout, 1, [&](std::size_t) { return machine.eigenvalues(); }, pieces, "stability", machine.trail())
+          .front();
+  const auto behind = eigen.begin() + (eigen.empty() ? 0 : 1 + static_cast<std::ptrdiff_t>(eigen.front()));
+  // Equilibria know of no loss factor: of such shafts nothing is said.
   if (context.machine.rotor.loss_factor == 0) {
-    const auto compute = [&](std::size_t) { return machine.growing(); };
-    put_growth(distribute(layout, 1, compute, pieces, "stability", machine.trail()).front(),
+    put_growth(eigen.empty() ? eigen : std::vector<double>(eigen.begin() + 1, behind),
                fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
                "No vibration settles into these transfer functions", summary);
   }
+  std::vector<Complex> eigenvalues;
+  for (auto at = behind; at != eigen.end(); at += 2) eigenvalues.emplace_back(at[0], at[1]);
+  const std::vector<Resonance> narrow =
+      narrow_resonances(eigenvalues, frequencies, search_of(context.machine.rotor, 0));
+  const auto there = [&](std::size_t i) {
+    std::vector<double> flat;
+    append(flat, machine.at({"machine"}, narrow[i].speed + 0.1 * narrow[i].width).values);
+    return flat;
+  };
+  const auto at_narrow = distribute(layout, narrow.size(), there, pieces, "resonance", machine.trail());
   const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0]);
 
   auto& group = results.group();
@@ -343,6 +379,26 @@ StudyResult FrequencyResponse::run(Context& context) {
     summary.set(ways[w].name + ".difference", apart.relative, "1");
     summary.set(ways[w].name + ".difference_at", deck::from_si(apart.frequency, unit), unit);
   }
+  std::vector<std::string> passed_over;
+  for (std::size_t k = 0; k < narrow.size(); ++k) {
+    const auto next =
+        static_cast<std::size_t>(std::ranges::lower_bound(frequencies, narrow[k].speed) - frequencies.begin());
+    double most = 1.1;
+    std::string words;
+    for (std::size_t e = 0; e < all[0][0].size(); ++e) {
+      const double here = std::hypot(at_narrow[k][2 * e], at_narrow[k][2 * e + 1]),
+                   beside = std::max(std::abs(all[0][next - 1][e]), std::abs(all[0][next][e])),
+                   nothing = std::max(rounding[next - 1][e], rounding[next][e]);
+      const double ratio = here / std::max(beside, nothing);
+      if (!(ratio > most)) continue;
+      most = ratio;
+      words = fmt::format("{:.6g} {} ({}.from.{} there {:.3g} {}, {:.3g} beside)", deck::from_si(narrow[k].speed, unit),
+                          unit, label(outputs[e / inputs]), label(options.inputs[e % inputs]), here,
+                          unit_of(outputs[e / inputs], options.inputs[e % inputs]), beside);
+    }
+    if (!words.empty()) passed_over.push_back(words);
+  }
+  warn_of_passed_over(summary, passed_over);
   if (!silent.empty())
     summary.warnings.push_back(
         fmt::format("no answer but rounding, below 1e-12 of the largest motion of the machine: {}. They are zero, and "

@@ -8,8 +8,9 @@
 
 namespace whirl::study {
 
-inline constexpr double peak_tolerance = 1e-5;   ///< of the speed of a peak
-inline constexpr double width_tolerance = 1e-3;  ///< of the width of a peak, for its amplification factor
+inline constexpr double peak_tolerance = 1e-5;    ///< of the speed of a peak
+inline constexpr double width_tolerance = 1e-3;   ///< of the width of a peak, for its amplification factor
+inline constexpr double motion_rounding = 1e-12;  ///< of the largest motion of a machine: smaller ones are rounding
 /// Of its height that a peak stands above the curve on either side: less may be what the equilibria leave of their
 /// equations, and rounding.
 inline constexpr double height_tolerance = 1e-6;

@@ -12,7 +12,7 @@
 namespace whirl::study {
 
 std::vector<double> pack(const Response& r) {
-  std::vector<double> flat{r.speed};
+  std::vector<double> flat{r.speed, r.largest};
   for (const auto* place : {&r.nodes, &r.bearings})
     for (const NodeMotion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
   flat.insert(flat.end(), r.films.begin(), r.films.end());
@@ -22,8 +22,9 @@ std::vector<double> pack(const Response& r) {
 Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings) {
   Response r;
   r.speed = flat[0];
+  r.largest = flat[1];
   for (std::size_t k = 0; k < n_nodes + n_bearings; ++k) {
-    const double* v = flat.data() + 1 + 4 * k;
+    const double* v = flat.data() + 2 + 4 * k;
     (k < n_nodes ? r.nodes : r.bearings).push_back({{v[0], v[1]}, {v[2], v[3]}});
   }
   r.films.assign(flat.end() - static_cast<std::ptrdiff_t>(n_bearings), flat.end());
@@ -34,7 +35,8 @@ ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::s
   ResponseCurve of;
   for (const Response& r : curve) {
     of.speed.push_back(r.speed);
-    of.height.push_back((r.*places)[at].semi_major());
+    const double height = (r.*places)[at].semi_major();
+    of.height.push_back(height > motion_rounding * r.largest ? height : 0);
   }
   return of;
 }

@@ -26,6 +26,7 @@ struct NodeMotion {
 /// At one speed [rad/s].
 struct Response {
   double speed = 0;
+  double largest = 0;  ///< displacement anywhere on the shaft [m]
   std::vector<NodeMotion> nodes, bearings;
   std::vector<double> films;  ///< smallest thickness that the linear motion leaves each bearing [m]
 };
@@ -34,7 +35,7 @@ using Places = std::vector<NodeMotion> Response::*;
 [[nodiscard]] std::vector<double> pack(const Response& r);
 [[nodiscard]] Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings);
 
-/// Semi-major axes of one place over the speeds.
+/// Semi-major axes of one place over the speeds; zero below 1e-12 of the largest displacement, where they are rounding.
 [[nodiscard]] ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::size_t at);
 
 /// Puts amplitudes at the operating speed as operating.*.

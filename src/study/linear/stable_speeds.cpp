@@ -13,21 +13,27 @@
 namespace whirl::study {
 namespace {
 
-// Speeds at which the numbers are counted in any case; a count costs an eigenvalue problem.
 constexpr std::size_t few = 13;
 
 }  // namespace
 
-StableSpeeds::StableSpeeds(std::vector<double> speeds, const std::vector<double>& always, const Count& count)
+std::vector<double> few_speeds(const std::vector<double>& speeds) {
+  const std::size_t n = speeds.size();
+  std::vector<double> out;
+  for (std::size_t k = 0; k < std::min(few, n); ++k) out.push_back(speeds[n <= few ? k : k * (n - 1) / (few - 1)]);
+  return out;
+}
+
+StableSpeeds::StableSpeeds(std::vector<double> speeds, const std::vector<double>& first, const Count& count)
     : speeds_(std::move(speeds)) {
   const std::size_t n = speeds_.size();
   std::map<std::size_t, int> counted;  // by place
-  std::set<std::size_t> first;
-  for (std::size_t k = 0; k < std::min(few, n); ++k) first.insert(n <= few ? k : k * (n - 1) / (few - 1));
-  for (const double speed : always)
+  std::set<std::size_t> at_first;
+  for (const double speed : first)
     if (const auto at = std::lower_bound(speeds_.begin(), speeds_.end(), speed); at != speeds_.end() && *at == speed)
-      first.insert(static_cast<std::size_t>(at - speeds_.begin()));
-  std::vector<std::size_t> next(first.begin(), first.end());
+      at_first.insert(static_cast<std::size_t>(at - speeds_.begin()));
+  if (n > 0) at_first.insert({0, n - 1});
+  std::vector<std::size_t> next(at_first.begin(), at_first.end());
   while (!next.empty()) {
     std::vector<double> at;
     for (const std::size_t k : next) at.push_back(speeds_[k]);

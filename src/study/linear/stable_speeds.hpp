@@ -9,9 +9,12 @@
 
 namespace whirl::study {
 
-/// Numbers of eigenvalues that grow about the equilibria over rising speeds. They are counted at 13 of the speeds, at
-/// those that matter most, and between two of these that differ by halves. Other speeds take the number of the counted
-/// ones beside them: a stretch with another number between two of these is not seen.
+/// At most 13 of rising speeds, evenly spread with both ends; a count at each costs an eigenvalue problem.
+[[nodiscard]] std::vector<double> few_speeds(const std::vector<double>& speeds);
+
+/// Numbers of eigenvalues that grow about the equilibria over rising speeds. They are counted at some of the speeds,
+/// and between two of these that differ by halves. Other speeds take the number of the counted ones beside them: a
+/// stretch with another number between two of these is not seen.
 class StableSpeeds {
 public:
   static constexpr int unknown = -1;  ///< eigenvalues may be missing, or could not be computed
@@ -19,8 +22,9 @@ public:
   using Count = std::function<std::vector<int>(const std::vector<double>& speeds)>;
 
   StableSpeeds() = default;
-  /// Of rising speeds; `always`: those of them that are counted in any case. Calls `count` a few times.
-  StableSpeeds(std::vector<double> speeds, const std::vector<double>& always, const Count& count);
+  /// Of rising speeds; `first`: those of them that are counted first, in any order, with both ends of all. Calls
+  /// `count` a few times.
+  StableSpeeds(std::vector<double> speeds, const std::vector<double>& first, const Count& count);
 
   [[nodiscard]] bool known() const { return !speeds_.empty(); }
   /// How many speeds were counted, and whether these are all.

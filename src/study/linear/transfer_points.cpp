@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "study/linear/response_peaks.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/freedom.hpp"
 
@@ -32,8 +33,6 @@ std::string place(const Point& p) {
 bool is_slope(Along a) {
   return a == Along::slope_x || a == Along::slope_y;
 }
-
-constexpr double rounding = 1e-12;  // of the largest motion
 
 rotor::Freedom freedom_of(Along a) {
   return static_cast<rotor::Freedom>(a);
@@ -167,7 +166,7 @@ Transfer TransferMatrix::at(double omega) {
       if (output.quantity == TransferOutput::Quantity::velocity) rate = {0, omega};
       if (output.quantity == TransferOutput::Quantity::acceleration) rate = -omega * omega;
       out.values[o * inputs + i] = z * rate;
-      out.rounding[o * inputs + i] = rounding * largest[is_slope(output.direction)] * std::abs(rate);
+      out.rounding[o * inputs + i] = motion_rounding * largest[is_slope(output.direction)] * std::abs(rate);
     }
   }
   return out;

@@ -4,10 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 
@@ -15,127 +14,19 @@
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
-#include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/linear/peak_list.hpp"
+#include "study/linear/resonances.hpp"
+#include "study/linear/responder.hpp"
 #include "study/linear/response_bars.hpp"
+#include "study/linear/response_places.hpp"
 #include "study/linear/response_record.hpp"
 #include "study/linear/stable_speeds.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/film/thickness.hpp"
-#include "whirl/rotor/divide.hpp"
-#include "whirl/rotor/shaft.hpp"
-#include "whirl/solve/newton/frequency_response.hpp"
 
 namespace whirl::study {
 namespace {
-
-using Complex = std::complex<double>;
-
-// The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
-// gives way; there the motion counts against the clearance.
-double film_left(const system::Support& s, const system::JournalState& at, const NodeMotion& m,
-                 const std::array<Complex, 2>& tilt) {
-  const film::Facts film = film::facts(s.film);
-  if (film.coefficients) return std::numeric_limits<double>::infinity();
-  if (film.gives_way) return s.geometry.clearance - m.semi_major();
-  double least = std::numeric_limits<double>::infinity();
-  constexpr int samples = 90;
-  for (int k = 0; k < samples; ++k) {
-    const Complex turn = std::exp(Complex(0, 2 * std::numbers::pi * k / samples));
-    least =
-        std::min(least, film::minimum_thickness(
-                            s.geometry, {at.position[0] + (m.x * turn).real(), at.position[1] + (m.y * turn).real(),
-                                         at.tilt[0] + (tilt[0] * turn).real(), at.tilt[1] + (tilt[1] * turn).real()}));
-  }
-  return least;
-}
-
-class Responder {
-public:
-  /// `nodes` of the deck's shaft, of whatever mesh.
-  Responder(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options,
-            std::vector<int> nodes, const FilmMesh& mesh = {})
-      : system_(layout.space,
-                with_cut_shaft(with_film_mesh(system::train_of(context.machine, options.unbalance), mesh.factor),
-                               parts_of(mesh)),
-                options.range.from),
-        walker_(system_),
-        solver_(system_),
-        nodes_(std::move(nodes)) {
-    for (int& node : nodes_) node = rotor::node_after(context.machine.rotor, node, parts_of(mesh));
-  }
-
-  Response at(double speed) {
-    Vec x = walker_.at(speed);
-    PetscInt begin = 0, end = 0;
-    core::check(VecGetOwnershipRange(x, &begin, &end));
-    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on the
-    // rotor's rows; own states of films, behind all pairs of coordinate and rate, are not forced.
-    std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
-    for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); ++row) {
-      const auto of = static_cast<std::size_t>(row), at = static_cast<std::size_t>(2 * (row - begin));
-      right[at] = speed * speed * system_.forcing_cosine()[of];
-      right[at + 1] = -speed * speed * system_.forcing_sine()[of];
-    }
-    {
-      std::optional<system::RotorSystem::WithLoss> loss;  // equilibria know of none
-      if (system_.train().rotor.loss_factor > 0) loss.emplace(system_, system_.loss_at(speed));
-      solver_.solve(x, speed, right, amplitude);
-    }
-    std::vector<double> state[2], shaft[2];
-    for (std::size_t part = 0; part < 2; ++part) {
-      core::Vector v = core::duplicate(x);
-      {
-        const core::WriteArray a(v.get());
-        for (PetscInt i = 0; i < a.size(); ++i) a[i] = amplitude[static_cast<std::size_t>(2 * i) + part];
-      }
-      state[part] = system_.gather(v.get());
-      shaft[part] = system_.shaft(state[part].data(), 0, false);
-    }
-    Response r;
-    r.speed = speed;
-    for (const int node : nodes_) {
-      const auto k = static_cast<std::size_t>(4 * (node - 1));
-      r.nodes.push_back({{shaft[0][k], shaft[1][k]}, {shaft[0][k + 1], shaft[1][k + 1]}});
-    }
-    const auto rest = system_.journals(system_.gather(x).data());
-    for (int b = 0; b < system_.n_bearings(); ++b) {
-      const auto value = [&](PetscInt coordinate) {
-        const auto i = static_cast<std::size_t>(2 * coordinate);
-        return Complex(state[0][i], state[1][i]);
-      };
-      Complex z[2];
-      std::array<Complex, 2> tilt{};
-      for (int d = 0; d < 2; ++d) {
-        const PetscInt p = system_.pedestal(b, d);
-        z[d] = value(system_.journal(b, d)) - (p >= 0 ? value(p) : 0.0);
-        if (system_.ports(b) > 2) tilt[static_cast<std::size_t>(d)] = value(system_.journal(b, 2 + d));
-      }
-      r.bearings.push_back({z[0], z[1]});
-      const auto k = static_cast<std::size_t>(b);
-      r.films.push_back(film_left(system_.train().supports[k], rest[k], r.bearings[k], tilt));
-    }
-    return r;
-  }
-
-  // Eigenvalues that grow about the equilibrium at a speed, StableSpeeds::unknown where some may be missing.
-  int growing(double speed) {
-    std::optional<Growth> growth;
-    (void)has_answer([&] { growth = growth_at(system_, walker_.at(speed)); });
-    return growth ? growth->known_count() : StableSpeeds::unknown;
-  }
-
-  [[nodiscard]] system::ShownPlaces places() const { return system_.places(); }
-  [[nodiscard]] Trail trail() { return walker_.trail(); }
-
-private:
-  system::RotorSystem system_;
-  Walker walker_;
-  solve::FrequencyResponse solver_;
-  std::vector<int> nodes_;
-};
 
 std::vector<double> speeds_of(const std::vector<Response>& curve) {
   std::vector<double> speeds;
@@ -147,44 +38,19 @@ const Response& nearest(const std::vector<Response>& curve, double speed) {
   return *std::ranges::min_element(curve, {}, [&](const Response& r) { return std::abs(r.speed - speed); });
 }
 
-// A place of the response: shaft nodes, then journals in their bearings.
-struct Place {
-  std::string label, head;  // in the list of peaks, and of its values
-  Places of;
-  std::size_t at;
-};
-
-std::vector<Place> places_of(const std::vector<int>& nodes, const std::vector<std::string>& bearings) {
-  std::vector<Place> out;
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    out.push_back({fmt::format("node {}", nodes[k]), fmt::format("node.{}", nodes[k]), &Response::nodes, k});
-  for (std::size_t b = 0; b < bearings.size(); ++b)
-    out.push_back({bearings[b] + ", journal", "bearing." + bearings[b], &Response::bearings, b});
-  return out;
-}
-
 // A peak of the list with the numbers that its bars stand on.
 struct Listed {
   io::PeakEntry entry;
   NamedPeak named;
+  std::string unsettled;  // why its numbers are not settled; empty if they are
 };
-
-// The peaks of a curve by falling height; those without a height are the highest.
-std::vector<std::size_t> tops_of(const ResponseCurve& curve) {
-  std::vector<std::size_t> tops = curve.tops();
-  std::ranges::stable_sort(tops, std::greater{}, [&](std::size_t k) {
-    const double height = peak_at(curve, k).height;
-    return std::isfinite(height) ? height : std::numeric_limits<double>::infinity();
-  });
-  return tops;
-}
 
 // Whether there is a peak at all; where that is open its margin decides nothing.
 void judge(const io::StudySummary& summary, Listed& peak) {
   io::PeakEntry& entry = peak.entry;
   entry.verdict = margin_verdict(entry.amplification_factor, entry.separation_margin, entry.required_margin);
-  std::string doubt;
-  if (peak.named.vanishes) doubt = "on another mesh the response has no peak there";
+  std::string doubt = peak.unsettled;
+  if (doubt.empty() && peak.named.vanishes) doubt = "on another mesh the response has no peak there";
   for (const auto& [name, q] : summary.values) {
     if (name != peak.named.head + prominence || !q.more.contains("uncertainty")) continue;
     const double bar = q.more.at("uncertainty");
@@ -195,32 +61,6 @@ void judge(const io::StudySummary& summary, Listed& peak) {
   if (doubt.empty()) return;
   entry.notes.push_back("undetermined: " + doubt);
   entry.verdict = "undetermined";
-}
-
-// Places show one resonance at speeds that differ by parts of this: one of them is counted.
-constexpr double one_resonance = 1e-3;
-
-// At the operating speed and at all resonances in any case. Equilibria know of no loss factor: of such shafts nothing
-// is asked.
-StableSpeeds stability(const Context& context, const std::vector<Response>& curve, const std::vector<Place>& places,
-                       const std::optional<deck::Quantity>& operating, const StableSpeeds::Count& count) {
-  if (context.machine.rotor.loss_factor > 0) return {};
-  std::vector<double> speeds = speeds_of(curve), always;
-  if (operating) {
-    speeds.push_back(operating->value);
-    always.push_back(operating->value);
-  }
-  for (const Place& place : places) {
-    const ResponseCurve of = curve_at(curve, place.of, place.at);
-    for (const std::size_t k : of.tops()) {
-      const double top = of.speed[k];
-      if (std::ranges::none_of(always, [&](double s) { return std::abs(s - top) < one_resonance * top; }))
-        always.push_back(top);
-    }
-  }
-  std::ranges::sort(speeds);
-  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
-  return {std::move(speeds), always, count};
 }
 
 // What the summary has of a peak with its bars.
@@ -307,26 +147,82 @@ StudyResult UnbalanceResponse::run(Context& context) {
     }
   };
   // Then speeds around the two places where each peak has fallen to 0.707 of its height; these may show a higher top.
-  for (int round = 0; round < 3 && options.refine; ++round) {
-    settle(10, ask_for_top);
-    settle(10, [](const ResponseCurve& of, std::size_t k, int, std::vector<double>& speeds) {
-      ask_for_width(of, k, speeds);
-    });
-  }
+  const auto refine = [&] {
+    for (int round = 0; round < 3; ++round) {
+      settle(10, ask_for_top);
+      settle(10, [](const ResponseCurve& of, std::size_t k, int, std::vector<double>& speeds) {
+        ask_for_width(of, k, speeds);
+      });
+    }
+  };
+  if (options.refine) refine();
 
   const auto operating = operating_range(options.operating, options.operating_speed, context.machine.service_speed);
   const auto& operating_speed = options.operating_speed ? options.operating_speed : context.machine.service_speed;
-  const StableSpeeds stable =
-      stability(context, curve, places, operating_speed, [&](const std::vector<double>& speeds) {
-        const auto compute = [&](std::size_t i) {
-          return std::vector<double>{static_cast<double>(machine.growing(speeds[i]))};
-        };
-        std::vector<int> out;
-        for (const auto& one :
-             distribute(layout, speeds.size(), compute, pieces, fmt::format("{} stability", ++calls), machine.trail()))
-          out.push_back(static_cast<int>(one.front()));
-        return out;
-      });
+  // Eigenvalues at some speeds say where the machine is unstable, and between which speeds a resonance may hide.
+  std::map<double, int> growing;
+  Spectra spectra;
+  const auto look = [&](std::vector<double> speeds) {
+    std::ranges::sort(speeds);
+    speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+    std::erase_if(speeds, [&](double speed) { return growing.contains(speed); });
+    const auto compute = [&](std::size_t i) { return pack(machine.spectrum(speeds[i])); };
+    const auto found =
+        distribute(layout, speeds.size(), compute, pieces, fmt::format("{} stability", ++calls), machine.trail());
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      SpectrumAt here = unpack_spectrum(found[i]);
+      growing[speeds[i]] = here.growing;
+      if (!here.values.empty()) spectra[speeds[i]] = std::move(here.values);
+    }
+  };
+  // Equilibria know of no loss factor: of shafts with one stability is not asked.
+  const bool lossless = context.machine.rotor.loss_factor == 0;
+  const ResonanceSearch search = search_of(context.machine.rotor, machine.whole_spectra() ? 300 : 24);
+  std::vector<double> counted{curve.front().speed, curve.back().speed}, tops;
+  if (lossless) counted = few_speeds(speeds_of(curve));
+  if (operating_speed) counted.push_back(operating_speed->value);
+  add_tops(tops, curve, places, true);
+  add_tops(counted, curve, places, false);
+  std::vector<double> at_first = counted;
+  at_first.insert(at_first.end(), tops.begin(), tops.end());
+  if (search.limit < curve.back().speed) at_first.push_back(search.limit);
+  look(at_first);
+  const HiddenResonances hidden = hidden_resonances(spectra, speeds_of(curve), tops, search, look);
+  std::vector<double> beside;
+  for (const Resonance& r : hidden.found)
+    for (const double speed : around(r))
+      if (speed > curve.front().speed && speed < curve.back().speed) beside.push_back(speed);
+  if (options.refine && add(beside)) {
+    refine();
+    add_tops(counted, curve, places, false);
+  }
+  if (!options.refine && !beside.empty())
+    if (const auto words = shown_by(curve, at_speeds(beside), hidden.found, places, unit); !words.empty())
+      summary.warnings.push_back(fmt::format(
+          "the speeds computed miss resonances that stand between them: {}. 'refine: true' adds speeds there",
+          fmt::join(words, ", ")));
+  if (hidden.gave_up)
+    summary.warnings.emplace_back(
+        "more resonances than were looked for stand between the speeds computed: a narrower range shows them");
+  if (search.limit < curve.back().speed)
+    summary.warnings.push_back(fmt::format(
+        "above {:.6g} {} the elements of the shaft are no beams (half a wave fits into one, or its sections "
+        "shear against one another): no response is resolved there",
+        deck::from_si(search.limit, unit), unit));
+
+  StableSpeeds stable;
+  if (lossless) {
+    std::vector<double> all = speeds_of(curve);
+    if (operating_speed) all.push_back(operating_speed->value);
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    stable = StableSpeeds(std::move(all), counted, [&](const std::vector<double>& speeds) {
+      look(speeds);
+      std::vector<int> out;
+      for (const double speed : speeds) out.push_back(growing.at(speed));
+      return out;
+    });
+  }
 
   const auto put_peak = [&](io::StudySummary& to, const std::string& head, double speed, double height, double factor) {
     const io::PeakEntry entry = entry_of("", {speed, height, factor, {}, {}}, unit, operating);
@@ -350,7 +246,9 @@ StudyResult UnbalanceResponse::run(Context& context) {
       if (stable.known()) entry.stability = StableSpeeds::word(stable.at(peak.speed));
       if (const std::string bearing = touched(nearest(curve, peak.speed), shown); !bearing.empty())
         entry.notes.push_back("no answer: the motion leaves bearing " + bearing + " too little film");
-      peaks.push_back({entry, {head, p, peak.speed, peak.height, peak.amplification, peak.errors, saddles}});
+      peaks.push_back({entry,
+                       {head, p, peak.speed, peak.height, peak.amplification, peak.errors, saddles},
+                       unsettled(of, k, peak, options.refine, unit)});
       if (std::isfinite(peak.height)) continue;
       // Places see one resonance at speeds that differ by the tolerance.
       std::string& where = without_height[fmt::format("{:.5g}", deck::from_si(peak.speed, unit))];

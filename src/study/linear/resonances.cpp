@@ -1,0 +1,170 @@
+#include "study/linear/resonances.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+
+#include "study/bars/unresolved.hpp"
+#include "study/linear/response_peaks.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double near_enough = 1.5;   // widths: a resonance between two speeds is seen with 0.8 of its height
+constexpr double settled_part = 0.1;  // of the width
+constexpr double top_within = 2;      // widths from a resonance to its peak
+
+double width_of(Complex lambda, double speed, double least) {
+  return std::max(std::abs(lambda.real()), least * speed);
+}
+
+bool has_peak(Complex lambda) {
+  return -lambda.real() < no_peak * std::abs(lambda);
+}
+
+// The eigenvalue of one rank by modulus at two neighbouring speeds, on either side of them.
+struct Bracket {
+  double a, b;  // speeds
+  Complex at_a, at_b;
+  double f_a, f_b;  // modulus less the speed
+  double w_a, w_b;  // widths
+  [[nodiscard]] bool left() const { return std::abs(f_a) <= std::abs(f_b); }
+  [[nodiscard]] double secant() const { return a + f_a / (f_a - f_b) * (b - a); }
+  [[nodiscard]] double width() const { return left() ? w_a : w_b; }
+  [[nodiscard]] bool settled() const {
+    return std::min({std::abs(f_a), std::abs(f_b), b - a}) <= settled_part * width();
+  }
+};
+
+std::size_t below(const std::vector<Complex>& by_modulus, double speed) {
+  return static_cast<std::size_t>(std::ranges::count_if(by_modulus, [&](Complex v) { return std::abs(v) < speed; }));
+}
+
+// All of them that vibrate at one of their ends, each pair once.
+std::vector<Bracket> brackets_of(const Spectra& spectra, const ResonanceSearch& search) {
+  std::vector<Bracket> out;
+  for (auto low = spectra.begin(); low != spectra.end() && low->first < search.limit; ++low) {
+    const auto high = std::next(low);
+    if (high == spectra.end()) break;
+    const auto &at_a = low->second, &at_b = high->second;
+    const std::size_t n_a = below(at_a, low->first), n_b = below(at_b, high->first);
+    for (std::size_t m = std::min(n_a, n_b); m < std::min({std::max(n_a, n_b), at_a.size(), at_b.size()}); ++m) {
+      const Bracket x{low->first,
+                      high->first,
+                      at_a[m],
+                      at_b[m],
+                      std::abs(at_a[m]) - low->first,
+                      std::abs(at_b[m]) - high->first,
+                      width_of(at_a[m], low->first, search.least_width),
+                      width_of(at_b[m], high->first, search.least_width)};
+      const bool again = !out.empty() && out.back().a == x.a && out.back().f_a == x.f_a && out.back().f_b == x.f_b;
+      if (!again && (has_peak(x.at_a) || has_peak(x.at_b))) out.push_back(x);
+    }
+  }
+  return out;
+}
+
+// Whether the response shows what is enclosed.
+bool seen(const Bracket& x, const std::vector<double>& computed, const std::vector<double>& tops) {
+  const auto is_top = [&](double speed, double f, double width) {
+    return std::abs(f) <= top_within * width && std::ranges::find(tops, speed) != tops.end();
+  };
+  if (is_top(x.a, x.f_a, x.w_a) || is_top(x.b, x.f_b, x.w_b)) return true;
+  const double least = std::min(x.w_a, x.w_b);
+  auto from = std::ranges::upper_bound(computed, x.a), to = std::ranges::lower_bound(computed, x.b);
+  if (from == computed.begin() || to == computed.end()) return true;  // beyond what was computed
+  for (--from; from != to; ++from)
+    if (*std::next(from) - *from > near_enough * least) return false;
+  return true;
+}
+
+// Whether the samples around another one of about the same width show this one too.
+bool is_one_of(const std::vector<Resonance>& all, const Resonance& r) {
+  constexpr double alike = 3;
+  return std::ranges::any_of(all, [&](const Resonance& other) {
+    const auto [least, widest] = std::minmax(r.width, other.width);
+    return std::abs(r.speed - other.speed) < least && widest < alike * least;
+  });
+}
+
+}  // namespace
+
+ResonanceSearch search_of(const rotor::Options& rotor, std::size_t most) {
+  ResonanceSearch out{resolved_to(rotor), most};
+  out.least_width = std::max(out.least_width, 0.1 * rotor.loss_factor / 2);
+  return out;
+}
+
+bool shows(const std::vector<double>& computed, double at, double width) {
+  const auto next = std::ranges::lower_bound(computed, at);
+  if (next == computed.begin() || next == computed.end()) return true;
+  return *next - *std::prev(next) <= near_enough * width;
+}
+
+std::vector<Resonance> narrow_resonances(const std::vector<Complex>& eigenvalues, const std::vector<double>& computed,
+                                         const ResonanceSearch& search) {
+  std::vector<Resonance> out;
+  for (const Complex v : eigenvalues) {
+    const double at = std::abs(v), width = width_of(v, at, search.least_width);
+    if (v.imag() > 0 && has_peak(v) && at < search.limit && !shows(computed, at, width) && !is_one_of(out, {at, width}))
+      out.push_back({at, width});
+  }
+  std::ranges::sort(out, {}, &Resonance::speed);
+  return out;
+}
+
+std::vector<double> around(const Resonance& r) {
+  return {r.speed - 1.1 * r.width, r.speed + 0.1 * r.width, r.speed + 1.2 * r.width};
+}
+
+HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& computed, const std::vector<double>& tops,
+                                   const ResonanceSearch& search,
+                                   const std::function<void(const std::vector<double>& speeds)>& more) {
+  const auto sort = [&] {
+    for (auto& [speed, values] : known)
+      std::ranges::stable_sort(values, {}, [](Complex v) { return std::pair(std::abs(v), v.real()); });
+  };
+  sort();
+  HiddenResonances out;
+  constexpr int passes = 60;
+  std::size_t most = search.most;
+  for (int pass = 0; pass < passes; ++pass) {
+    std::vector<double> ask;
+    for (const Bracket& x : brackets_of(known, search)) {
+      if (x.settled() || seen(x, computed, tops)) continue;
+      const bool halve = pass % 3 == 2;
+      const double secant = x.secant();
+      ask.push_back(halve || !(secant > x.a && secant < x.b) ? (x.a + x.b) / 2 : secant);
+    }
+    std::vector<double> speeds;
+    for (const auto& [speed, values] : known) speeds.push_back(speed);
+    ask = worth_asking(std::move(ask), speeds);
+    if (ask.empty()) break;
+    if (ask.size() > most) {
+      out.gave_up = true;
+      break;
+    }
+    most -= ask.size();
+    more(ask);
+    sort();
+  }
+  for (const Bracket& x : brackets_of(known, search)) {
+    if (seen(x, computed, tops)) continue;
+    const Complex lambda = x.left() ? x.at_a : x.at_b;
+    if (!has_peak(lambda)) continue;
+    if (!x.settled()) {
+      out.gave_up = true;
+      continue;
+    }
+    const double speed = std::clamp(x.secant(), x.a, x.b);
+    if (speed >= search.limit || is_one_of(out.found, {speed, x.width()})) continue;
+    out.found.push_back({speed, x.width()});
+  }
+  std::ranges::sort(out.found, {}, &Resonance::speed);
+  return out;
+}
+
+}  // namespace whirl::study

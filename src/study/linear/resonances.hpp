@@ -1,0 +1,65 @@
+#pragma once
+// Resonances of a linear response that may hide between the speeds at which it is known.
+
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "whirl/rotor/options.hpp"
+
+namespace whirl::study {
+
+/// Eigenvalues [1/s] about the equilibria over the speed [rad/s].
+using Spectra = std::map<double, std::vector<std::complex<double>>>;
+
+/// An eigenvalue that vibrates with abs(lambda) = speed. A single resonance f = f_top/(1 + ((s - speed)/width)^2)^(1/2)
+/// falls to 0.707 of its height at a distance of its width abs(Re lambda).
+struct Resonance {
+  double speed = 0, width = 0;  ///< [rad/s]
+};
+
+/// What is looked for, and how far.
+struct ResonanceSearch {
+  double limit = 0;           ///< [rad/s]
+  std::size_t most = 0;       ///< spectra that `more` is asked for; beyond them the list is not whole, and `gave_up`
+  double least_width = 3e-5;  ///< of the speed, of what has no damping: nearer speeds say nothing new
+};
+/// Up to resolved_to(). A loss factor, which eigenvalues know nothing of, makes resonances wider: a tenth of what it
+/// does to the shaft alone is the least.
+[[nodiscard]] ResonanceSearch search_of(const rotor::Options& rotor, std::size_t most);
+
+/// Damping ratio from which on a resonance has no peak: abs(1 - r^2 + 2 i zeta r) has no minimum over r any more.
+inline constexpr double no_peak = 0.7071;
+
+/// Whether the rising speeds (or frequencies) stand so near each other about `at` that a resonance of this width shows.
+[[nodiscard]] bool shows(const std::vector<double>& computed, double at, double width);
+
+/// Resonances among eigenvalues [1/s] (both of each pair) that do not show at the rising frequencies `computed`, by
+/// rising frequency up to the limit.
+[[nodiscard]] std::vector<Resonance> narrow_resonances(const std::vector<std::complex<double>>& eigenvalues,
+                                                       const std::vector<double>& computed,
+                                                       const ResonanceSearch& search);
+
+/// Speeds around a resonance at which a response shows it. None of them is that of the resonance itself, where an
+/// undamped machine has no response.
+[[nodiscard]] std::vector<double> around(const Resonance& resonance);
+
+/// Resonances between known speeds that do not show in a response at the rising speeds `computed`, by rising speed.
+/// Two neighbours of `known` enclose as many as the number of eigenvalues with abs(lambda) below the speed differs by:
+/// eigenvalues in the order of their moduli are continuous over the speed, whatever they do. A mode that comes and goes
+/// between two known speeds is not seen. Each resonance is enclosed further, by secants and halves, to a tenth of its
+/// width, with the eigenvalues that `more` puts into `known`, unless it shows: where `computed` stand near enough, or
+/// at one of `tops`, speeds among `known`. Those beyond the limit are left out.
+///
+/// Cost: about four spectra a resonance.
+struct HiddenResonances {
+  std::vector<Resonance> found;
+  bool gave_up = false;
+};
+[[nodiscard]] HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& computed,
+                                                 const std::vector<double>& tops, const ResonanceSearch& search,
+                                                 const std::function<void(const std::vector<double>& speeds)>& more);
+
+}  // namespace whirl::study

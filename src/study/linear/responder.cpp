@@ -1,0 +1,137 @@
+#include "study/linear/responder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "study/bars/shaft_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
+#include "study/growth.hpp"
+#include "whirl/film/thickness.hpp"
+#include "whirl/rotor/divide.hpp"
+#include "whirl/rotor/freedom.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+
+// The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
+// gives way; there the motion counts against the clearance.
+double film_left(const system::Support& s, const system::JournalState& at, const NodeMotion& m,
+                 const std::array<Complex, 2>& tilt) {
+  const film::Facts film = film::facts(s.film);
+  if (film.coefficients) return std::numeric_limits<double>::infinity();
+  if (film.gives_way) return s.geometry.clearance - m.semi_major();
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int samples = 90;
+  for (int k = 0; k < samples; ++k) {
+    const Complex turn = std::exp(Complex(0, 2 * std::numbers::pi * k / samples));
+    least =
+        std::min(least, film::minimum_thickness(
+                            s.geometry, {at.position[0] + (m.x * turn).real(), at.position[1] + (m.y * turn).real(),
+                                         at.tilt[0] + (tilt[0] * turn).real(), at.tilt[1] + (tilt[1] * turn).real()}));
+  }
+  return least;
+}
+
+}  // namespace
+
+Responder::Responder(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options,
+                     std::vector<int> nodes, const FilmMesh& mesh)
+    : system_(layout.space,
+              with_cut_shaft(with_film_mesh(system::train_of(context.machine, options.unbalance), mesh.factor),
+                             parts_of(mesh)),
+              options.range.from),
+      walker_(system_),
+      solver_(system_),
+      nodes_(std::move(nodes)) {
+  for (int& node : nodes_) node = rotor::node_after(context.machine.rotor, node, parts_of(mesh));
+}
+
+Response Responder::at(double speed) {
+  Vec x = walker_.at(speed);
+  PetscInt begin = 0, end = 0;
+  core::check(VecGetOwnershipRange(x, &begin, &end));
+  // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on the
+  // rotor's rows; own states of films, behind all pairs of coordinate and rate, are not forced.
+  std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
+  for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); ++row) {
+    const auto of = static_cast<std::size_t>(row), at = static_cast<std::size_t>(2 * (row - begin));
+    right[at] = speed * speed * system_.forcing_cosine()[of];
+    right[at + 1] = -speed * speed * system_.forcing_sine()[of];
+  }
+  {
+    std::optional<system::RotorSystem::WithLoss> loss;  // equilibria know of none
+    if (system_.train().rotor.loss_factor > 0) loss.emplace(system_, system_.loss_at(speed));
+    solver_.solve(x, speed, right, amplitude);
+  }
+  std::vector<double> state[2], shaft[2];
+  for (std::size_t part = 0; part < 2; ++part) {
+    core::Vector v = core::duplicate(x);
+    {
+      const core::WriteArray a(v.get());
+      for (PetscInt i = 0; i < a.size(); ++i) a[i] = amplitude[static_cast<std::size_t>(2 * i) + part];
+    }
+    state[part] = system_.gather(v.get());
+    shaft[part] = system_.shaft(state[part].data(), 0, false);
+  }
+  Response r;
+  r.speed = speed;
+  for (std::size_t k = 0; k < shaft[0].size(); ++k)
+    if (!rotor::is_slope(rotor::freedom_at(static_cast<int>(k))))
+      r.largest = std::max(r.largest, std::hypot(shaft[0][k], shaft[1][k]));
+  for (const int node : nodes_) {
+    const auto k = static_cast<std::size_t>(4 * (node - 1));
+    r.nodes.push_back({{shaft[0][k], shaft[1][k]}, {shaft[0][k + 1], shaft[1][k + 1]}});
+  }
+  const auto rest = system_.journals(system_.gather(x).data());
+  for (int b = 0; b < system_.n_bearings(); ++b) {
+    const auto value = [&](PetscInt coordinate) {
+      const auto i = static_cast<std::size_t>(2 * coordinate);
+      return Complex(state[0][i], state[1][i]);
+    };
+    Complex z[2];
+    std::array<Complex, 2> tilt{};
+    for (int d = 0; d < 2; ++d) {
+      const PetscInt p = system_.pedestal(b, d);
+      z[d] = value(system_.journal(b, d)) - (p >= 0 ? value(p) : 0.0);
+      if (system_.ports(b) > 2) tilt[static_cast<std::size_t>(d)] = value(system_.journal(b, 2 + d));
+    }
+    r.bearings.push_back({z[0], z[1]});
+    const auto k = static_cast<std::size_t>(b);
+    r.films.push_back(film_left(system_.train().supports[k], rest[k], r.bearings[k], tilt));
+  }
+  return r;
+}
+
+SpectrumAt Responder::spectrum(double speed) {
+  SpectrumAt out;
+  (void)has_answer([&] {
+    const solve::Stability found = equilibrium_stability(system_, walker_.at(speed));
+    out = {growth_of(found).known_count(), found.values};
+  });
+  return out;
+}
+
+bool Responder::whole_spectra() const {
+  return system_.size() <= spectral::EigenOptions{}.dense_below;
+}
+
+std::vector<double> pack(const SpectrumAt& spectrum) {
+  std::vector<double> flat{static_cast<double>(spectrum.growing)};
+  for (const Complex& v : spectrum.values) flat.insert(flat.end(), {v.real(), v.imag()});
+  return flat;
+}
+
+SpectrumAt unpack_spectrum(const std::vector<double>& flat) {
+  SpectrumAt out{static_cast<int>(flat.front()), {}};
+  for (std::size_t k = 1; k < flat.size(); k += 2) out.values.emplace_back(flat[k], flat[k + 1]);
+  return out;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,122 @@
+// Resonances between the speeds at which a response is known.
+#include "study/linear/resonances.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+
+// Both of the pair with this modulus and damping ratio; two real ones above one.
+void add(std::vector<Complex>& out, double modulus, double ratio) {
+  if (ratio < 1) {
+    out.push_back({-ratio * modulus, modulus * std::sqrt(1 - ratio * ratio)});
+    out.push_back(std::conj(out.back()));
+    return;
+  }
+  const double root = std::sqrt(ratio * ratio - 1);
+  out.insert(out.end(), {-modulus * (ratio - root), -modulus * (ratio + root)});
+}
+
+// A rotor with a disc: bending at 221 rad/s; forward and backward at 600 -+ 0.4 speed; a mode without damping; a damped
+// one whose pair parts at 2000 rad/s; one that falls away at all speeds; modes above.
+std::vector<Complex> rotor_at(double speed) {
+  std::vector<Complex> out;
+  add(out, 221, 1e-3);
+  add(out, std::sqrt(0.04 * speed * speed + 360000) + 0.2 * speed, 0.02);
+  add(out, std::sqrt(0.04 * speed * speed + 360000) - 0.2 * speed, 0.02);
+  add(out, 3000, 0);
+  add(out, 500, std::sqrt(speed / 2000));
+  add(out, 50 + 0.3 * speed, 2);
+  add(out, 40000, 0.3);
+  add(out, 1e7, 0.01);
+  return out;
+}
+
+struct Search {
+  Spectra known;
+  std::size_t asked = 0;
+  HiddenResonances of(const std::vector<double>& computed, const std::vector<double>& tops, double limit = 1e9,
+                      std::size_t most = 200) {
+    known.clear();
+    asked = 0;
+    for (const auto* some : {&computed, &tops})
+      for (const double s : *some) known[s] = rotor_at(s);
+    return hidden_resonances(known, computed, tops, {limit, most}, [&](const std::vector<double>& more) {
+      asked += more.size();
+      for (const double s : more) known[s] = rotor_at(s);
+    });
+  }
+};
+
+// The speed at which the root of 0.04 s^2 + 600^2 plus or minus 0.2 s is s.
+double disc(double sign) {
+  return 600 / std::sqrt((1 - sign * 0.2) * (1 - sign * 0.2) - 0.04);
+}
+
+TEST(HiddenResonances, AreFoundBetweenSpeedsFarApart) {
+  Search search;
+  for (const std::vector<double>& computed : {std::vector<double>{10, 1e5}, {1, 5e4, 1e5}, {10, 300, 1e5}}) {
+    const auto [found, gave_up] = search.of(computed, {});
+    EXPECT_FALSE(gave_up);
+    ASSERT_EQ(found.size(), 6U);
+    const double speeds[] = {221, 500, disc(-1), disc(1), 3000, 40000};
+    const double widths[] = {0.221, 250, 0.02 * disc(-1), 0.02 * disc(1), 3e-5 * 3000, 12000};
+    for (std::size_t k = 0; k < 6; ++k) {
+      EXPECT_NEAR(found[k].speed, speeds[k], 0.1 * widths[k]) << k;
+      EXPECT_NEAR(found[k].width, widths[k], 0.1 * widths[k]) << k;
+    }
+    EXPECT_LE(search.asked, 40U);
+  }
+}
+
+TEST(HiddenResonances, AreNoneWhereTheResponseShowsThem) {
+  Search search;
+  // Between 2900 and 3100 rad/s stands the undamped one.
+  EXPECT_EQ(search.of({2900, 3100}, {}).found.size(), 1U);
+  EXPECT_TRUE(search.of({2900, 3100}, {3000.1}).found.empty());
+  EXPECT_EQ(search.asked, 0U);
+  // The disc's forward mode is 15.5 rad/s wide on either side.
+  EXPECT_TRUE(search.of({760, 770, 780, 790}, {}).found.empty());
+  EXPECT_EQ(search.asked, 0U);
+  EXPECT_EQ(search.of({700, 740, 830, 900}, {}).found.size(), 1U);
+  // What lies above the limit is not looked for, nor what has no peak.
+  EXPECT_TRUE(search.of({2900, 3100}, {}, 2500).found.empty());
+  EXPECT_TRUE(search.of({40, 80}, {}).found.empty());
+}
+
+TEST(HiddenResonances, AreGivenUpWhereTheyCostTooMuch) {
+  Search search;
+  EXPECT_TRUE(search.of({10, 1e5}, {}, 1e9, 5).gave_up);
+  EXPECT_LE(search.asked, 5U);
+}
+
+// Of a single machine over the frequency: each pair once, what shows and what has no peak left out.
+TEST(NarrowResonances, AreThoseBetweenFrequenciesFarApart) {
+  const std::vector<Complex> at_rest = rotor_at(0.01);
+  const std::vector<Resonance> found = narrow_resonances(at_rest, {100, 400, 592, 608, 2000, 5000}, {1e9, 0});
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_NEAR(found[0].speed, 221, 1e-9);
+  EXPECT_NEAR(found[0].width, 0.221, 1e-9);
+  EXPECT_NEAR(found[1].speed, 500, 1e-9);
+  EXPECT_NEAR(found[2].speed, 3000, 1e-9);
+  EXPECT_EQ(narrow_resonances(at_rest, {100, 400, 592, 608, 2000, 5000}, {2500, 0}).size(), 2U);
+  EXPECT_EQ(narrow_resonances(at_rest, {2000, 4000}, {1e9, 0}).size(), 1U);
+  EXPECT_TRUE(narrow_resonances(at_rest, {2000, 4000}, {1e9, 0, 0.5}).empty());
+}
+
+// Three speeds around a resonance show it.
+TEST(HiddenResonances, ShowInSpeedsAroundThem) {
+  const Resonance narrow{3000, 0.09};
+  std::vector<double> computed{10, 1e5};
+  EXPECT_FALSE(shows(computed, narrow.speed, narrow.width));
+  for (const double s : around(narrow)) computed.insert(computed.end() - 1, s);
+  EXPECT_TRUE(shows(computed, narrow.speed, narrow.width));
+  EXPECT_TRUE(shows(computed, 2e5, 1));  // beyond what was asked for
+}
+
+}  // namespace
+}  // namespace whirl::study
