@@ -108,7 +108,7 @@ public:
     const auto missing = [&](const std::optional<ServiceFact>& fact, const char* what, const char* how) {
       if (!fact) service_.facts.push_back({what, {}, {}, how, {}});
     };
-    missing(film_, "thinnest film", "not known: no `static` at this speed gives one");
+    missing(film_, "thinnest film", "not known: no `static` and no `cycle_branch` gives one at this speed");
     missing(temperature_, "highest film temperature",
             "not known: no `thd` and no film with heat gives one at this speed");
     missing(vibration_, "largest vibration",
@@ -321,26 +321,33 @@ private:
     if (group && group->has_attribute("speed") && is_service(group->real("speed"))) vote(s.stability, s.name);
   }
 
-  // Half of the travel of the journals in a cycle that was asked for at this speed.
+  // Half of the travel of the journals, and the thinnest film, in a cycle that was asked for at this speed.
   void take_cycles(const StudySummary& s) {
     const io::Group* group = group_of(s);
     if (!group || !group->has_attribute("parameter") || group->text("parameter") != "speed") return;
     const double here = deck::from_si(speed_, group->text("parameter_unit"));
     for (const auto& [name, q] : s.values) {
-      const std::size_t place = name.find(".peak_to_peak.");
+      constexpr std::string_view travel = ".peak_to_peak.", film = ".min_thickness.";
+      const bool thin = name.find(film) != std::string::npos;
+      const std::size_t place = name.find(thin ? film : travel);
       double at = 0;
       if (!name.starts_with("at.") || place == std::string::npos || q.unit != "m" || !std::isfinite(q.value)) continue;
       const auto [end, code] = std::from_chars(name.data() + 3, name.data() + place, at);
       if (code != std::errc() || end != name.data() + place || std::abs(at - here) > same * here) continue;
-      const std::string journal = name.substr(place + 14, name.rfind('.') - place - 14);
-      std::string mark = "cycle, half of peak to peak in " + name.substr(name.rfind('.') + 1);
+      const std::string rest = name.substr(place + (thin ? film : travel).size());
+      const std::size_t dot = thin ? rest.size() : rest.rfind('.');
+      const std::string journal = rest.substr(0, dot);
+      std::string mark = thin ? "least over a cycle" : "cycle, half of peak to peak in " + rest.substr(dot + 1);
       if (const Quantity* largest = find(s, name.substr(0, place) + ".multiplier.modulus")) {
         const double over = largest->value - 1, bar_of_it = largest->bar();
         mark += std::abs(over) <= bar_of_it ? ", whose stability is undetermined"
                 : over > 0                  ? ", which is unstable"
                                             : "";
       }
-      keep(vibration_, {"largest vibration", journal, {q.value / 2, "m", bar(q.bar() / 2)}, mark, s.name}, true);
+      if (thin)
+        keep(film_, {"thinnest film", journal, q, mark, s.name}, false);
+      else
+        keep(vibration_, {"largest vibration", journal, {q.value / 2, "m", bar(q.bar() / 2)}, mark, s.name}, true);
     }
   }
 

@@ -171,6 +171,9 @@ TEST(Service, TakesCyclesAndResponses) {
   cycles.set("at.3600.peak_to_peak.B1.x", 40e-6, "m", {{"uncertainty", 2e-6}});
   cycles.set("at.3600.peak_to_peak.B1.y", 60e-6, "m");
   cycles.set("at.3500.peak_to_peak.B1.y", 90e-6, "m");
+  cycles.set("at.3600.min_thickness.B1", 20e-6, "m");
+  cycles.set("at.3600.min_thickness.B2", 12e-6, "m", {{"uncertainty", 1e-6}});
+  cycles.set("at.3500.min_thickness.B1", 8e-6, "m");
   cycles.set("at.3600.multiplier.modulus", 1.01, "1");
   response.name = response.kind = "unbalance_response";
   response.set("operating_speed", 3600, "rpm");
@@ -187,6 +190,9 @@ TEST(Service, TakesCyclesAndResponses) {
   const auto both = service_of({3600 * rpm, "rpm"}, std::vector{cycles, response}, root);
   EXPECT_NEAR(fact(both, "largest vibration")->value.value, 30e-6, 1e-12);
   EXPECT_NE(fact(both, "largest vibration")->mark.find("which is unstable"), std::string::npos);
+  EXPECT_EQ(fact(both, "thinnest film")->place, "B2");
+  EXPECT_EQ(fact(both, "thinnest film")->value.value, 12e-6);
+  EXPECT_NE(fact(both, "thinnest film")->mark.find("over a cycle, which is unstable"), std::string::npos);
   EXPECT_EQ(fact(both, "peak below")->value.value, 3400);
   EXPECT_EQ(fact(both, "stability")->mark, "unstable");
   response.set("operating.node.4.semi_major", 35e-6, "m");

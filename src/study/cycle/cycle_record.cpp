@@ -191,10 +191,12 @@ bool CycleRecord::one_sided() const {
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
                          system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
   const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), places_.names.size());
+  const std::vector<double> films = film_column(least_films(cycle, system), places_.names.size());
   const std::string head = "at." + key + ".";
   for (std::size_t i = 0; i < places_.names.size(); ++i) {
     summary.set(head + "peak_to_peak." + places_.names[i] + ".x", e.x_max[i] - e.x_min[i], places_.unit);
     summary.set(head + "peak_to_peak." + places_.names[i] + ".y", e.y_max[i] - e.y_min[i], places_.unit);
+    if (std::isfinite(films[i])) summary.set(head + "min_thickness." + places_.names[i], films[i], places_.unit);
   }
   if (!stability.values.empty()) {
     summary.set(head + "multiplier.modulus", std::abs(stability.values.front()), "1");
