@@ -12,6 +12,7 @@
 #include "whirl/core/printable.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/deck/output.hpp"
+#include "whirl/io/checkpoint.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
@@ -70,7 +71,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
   std::vector<std::string> files;
   for (const auto& s : deck.studies)
-    for (const char* kind : {".checkpoint.h5", ".xdmf"}) files.push_back(io::safe_name(s->name()) + kind);
+    for (const char* kind : {io::Checkpoint::ending, ".xdmf"}) files.push_back(io::safe_name(s->name()) + kind);
   Directory held(comm, directory, study::resolved_text(deck), earlier, files);
   study::RunOptions options{directory, WHIRL_VERSION, {}, {}, request.resume};
   if (request.progress)

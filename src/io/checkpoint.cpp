@@ -112,7 +112,8 @@ bool Checkpoint::exists() const {
 
 void Checkpoint::remove() const {
   std::error_code ignored;
-  for (const char* left : {"", ".prev", ".next", ".next.part"}) std::filesystem::remove(path_.string() + left, ignored);
+  std::filesystem::remove(path_, ignored);
+  for (const char* left : beside) std::filesystem::remove(path_.string() + left, ignored);
 }
 
 }  // namespace whirl::io

@@ -8,6 +8,7 @@
 
 #include "io/atomic_file.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/io/checkpoint.hpp"
 
 namespace whirl::io {
 namespace {
@@ -30,8 +31,8 @@ bool passes_a_link(const fs::path& folder, const fs::path& name) {
 // What stands beside a file while it is written, and what a kill leaves of it.
 std::vector<std::string> leftovers(const std::string& name) {
   std::vector<std::string> out{name + ".part"};
-  if (name.ends_with(".checkpoint.h5"))
-    for (const char* suffix : {".prev", ".next", ".next.part"}) out.push_back(name + suffix);
+  if (name.ends_with(Checkpoint::ending))
+    for (const char* suffix : Checkpoint::beside) out.push_back(name + suffix);
   return out;
 }
 
@@ -91,13 +92,22 @@ void Manifest::require_files() const {
   }
 }
 
+bool Manifest::remove_file(const std::string& name) const {
+  const fs::path path = folder_ / name;
+  if (passes_a_link(folder_, name) || fs::is_directory(fs::symlink_status(path))) return false;
+  fs::remove(path);
+  for (const std::string& left : leftovers(name)) fs::remove(folder_ / left);
+  return true;
+}
+
+void Manifest::remove_checkpoints() const {
+  for (const std::string& name : names_)
+    if (name.ends_with(Checkpoint::ending)) (void)remove_file(name);
+}
+
 void Manifest::remove_files(const std::string& keep) {
   for (const std::string& name : names_) {
-    if (name == keep || passes_a_link(folder_, name)) continue;
-    const fs::path path = folder_ / name;
-    if (fs::is_directory(fs::symlink_status(path))) continue;
-    fs::remove(path);
-    for (const std::string& left : leftovers(name)) fs::remove(folder_ / left);
+    if (name == keep || !remove_file(name)) continue;
     // Folders that are not empty refuse, and stay.
     std::error_code ignored;
     for (fs::path inner = fs::path(name).parent_path(); !inner.empty(); inner = inner.parent_path())

@@ -16,8 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* checkpoint_ending = ".checkpoint.h5";
-
 // Those of this run in the file; an earlier one may have had others.
 void put_options(io::Group& root, const std::vector<io::LibraryOption>& options) {
   root.erase_group("options");
@@ -58,7 +56,7 @@ Writer::Writer(MPI_Comm comm, const Deck& deck, const RunOptions& options)
       if (!known || studies.group(name).integer("delivered") == 0) continue;
       finished_.push_back(s.name);
       // A run killed right after it finished the study leaves this behind.
-      if (rank_ == 0) io::Checkpoint(directory_ / (name + checkpoint_ending)).remove();
+      if (rank_ == 0) io::Checkpoint(directory_ / (name + io::Checkpoint::ending)).remove();
     }
   });
   io::describe_results(root_, deck.machine.title, options.version);
@@ -84,7 +82,7 @@ fs::path Writer::file(const std::string& name) {
 
 fs::path Writer::checkpoint_path(const std::string& study) {
   fs::path path;
-  core::agree(comm_, [&] { path = file(io::safe_name(study) + checkpoint_ending); });
+  core::agree(comm_, [&] { path = file(io::safe_name(study) + io::Checkpoint::ending); });
   return path;
 }
 
@@ -109,7 +107,7 @@ void Writer::add(StudyResult result) {
   write();
   core::agree(comm_, [&] {
     if (rank_ != 0) return;
-    io::Checkpoint(directory_ / (file + checkpoint_ending)).remove();
+    io::Checkpoint(directory_ / (file + io::Checkpoint::ending)).remove();
     for (const auto& part : result.checkpoints) io::Checkpoint(part).remove();
   });
   tell(name);
@@ -117,9 +115,7 @@ void Writer::add(StudyResult result) {
 
 void Writer::end() {
   core::agree(comm_, [&] {
-    if (rank_ != 0) return;
-    for (const std::string& name : manifest_.names())
-      if (name.ends_with(checkpoint_ending)) io::Checkpoint(directory_ / name).remove();
+    if (rank_ == 0) manifest_.remove_checkpoints();
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -16,6 +17,11 @@ namespace whirl::io {
 /// broadcast what matters.
 class Checkpoint {
 public:
+  /// How the names of checkpoints end.
+  static constexpr const char* ending = ".checkpoint.h5";
+  /// What stands beside one while it is written, and what a kill leaves of it.
+  static constexpr std::array<const char*, 3> beside{".prev", ".next", ".next.part"};
+
   explicit Checkpoint(std::filesystem::path path) : path_(std::move(path)) {}
 
   /// Writes `state` with its checksum, keeps the last checkpoint as `.prev`, then renames. Attributes of `state` whose

@@ -31,8 +31,12 @@ public:
   /// Removes the files named, except `keep`, and what a kill left of them (`NAME.part`, `.prev`, `.next`,
   /// `.next.part`); folders below this one that are empty then; and the manifest, which goes last.
   void remove_files(const std::string& keep = {});
+  /// Removes the checkpoints among them, and what a kill left of these.
+  void remove_checkpoints() const;
 
 private:
+  // False if it leads elsewhere or is a folder, and stays.
+  [[nodiscard]] bool remove_file(const std::string& name) const;
   std::filesystem::path folder_;
   std::vector<std::string> names_;
 };
