@@ -150,7 +150,10 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
     found = solve::machine_modes(system, x, options);
   }
   const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
-  const double limit = rotor ? resolved_to(rotor->train().rotor) : std::numeric_limits<double>::infinity();
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const double limit = rotor ? resolved_to(rotor->train().rotor) : infinite;
+  // Damping below its rounding makes no machine an undamped one where no beam theory holds.
+  const double beams_to = rotor ? shear_cut_off(rotor->train().rotor) : infinite;
   std::vector<std::complex<double>> of_mesh;
   for (const auto& mode : found.modes) {
     if (mode.lambda.real() > 0 && is_of_elements(mode.lambda, limit)) continue;
@@ -161,7 +164,7 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
     if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;
-    if (mode.neutral() && std::abs(mode.lambda.imag()) <= limit) neutral += mode.lambda.imag() != 0 ? 2 : 1;
+    if (mode.neutral() && std::abs(mode.lambda.imag()) <= beams_to) neutral += mode.lambda.imag() != 0 ? 2 : 1;
   }
   solve::Stability s = solve::make_stability(std::move(values), [&rounding](std::complex<double> v) {
     const auto at = rounding.find(v.real());
