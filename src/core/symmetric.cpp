@@ -28,7 +28,7 @@ SymmetricPairs pairs(Eigen::MatrixXd& a, bool vectors, const std::string& what, 
   size = static_cast<int>(work.size());
   if (info == 0) call(out.values.data(), work.data(), &size, &info);
   if (info > static_cast<int>(a.rows())) throw NotConverged(what + " is not positive definite");
-  if (info != 0) throw NotConverged("no eigenvalues with " + what);
+  if (info != 0) throw NotConverged(what + ": its eigenvalues did not converge");
   if (vectors) out.vectors = std::move(a);
   return out;
 }
@@ -44,7 +44,7 @@ SymmetricPairs symmetric_pairs(Eigen::MatrixXd a, const std::string& what) {
 }
 
 SymmetricPairs symmetric_pairs(Eigen::MatrixXd a, Eigen::MatrixXd b, const std::string& what, bool vectors) {
-  if (!a.allFinite() || !b.allFinite()) throw NotConverged("eigenvalues of a matrix that is not finite, with " + what);
+  if (!a.allFinite() || !b.allFinite()) throw NotConverged(what + ": a matrix is not finite");
   const int n = static_cast<int>(a.rows()), type = 1;
   return pairs(a, vectors, what, [&](double* values, double* work, int* size, int* info) {
     dsygv_(&type, vectors ? "V" : "N", "L", &n, a.data(), &n, b.data(), &n, values, work, size, info);

@@ -79,7 +79,8 @@ void solve_standard(EigenSolver& eps, Mat standard, bool sorted) {
   check(EPSSolve(eps.get()));
 }
 
-// The nearer to the target of two eigenvalues; alike where they are equal but for rounding.
+// The nearer to the target of two eigenvalues; alike where a search could not tell them apart: it swaps none of these,
+// and what is wanted stands first within a millionth all the same.
 PetscErrorCode nearer(PetscScalar ar, PetscScalar ai, PetscScalar br, PetscScalar bi, PetscInt* result, void* search) {
   PetscScalar at = 0;
   const PetscErrorCode code = EPSGetTarget(static_cast<EPS>(search), &at);

@@ -10,6 +10,9 @@
 namespace whirl::spectral {
 namespace {
 
+// Eigenvalues nearer than this part of themselves are looked at: may they be one, parted by rounding?
+constexpr double nearest_part = 1e-5;
+
 // A x of all vectors x, by two products of real matrices: Eigen multiplies a real matrix and a complex one entry by
 // entry.
 Eigen::MatrixXcd images(const Eigen::MatrixXd& a, const std::vector<Eigen::VectorXcd>& vectors) {
@@ -71,7 +74,6 @@ double DensePencil::newton_step(std::size_t k) const {
 }
 
 std::vector<bool> DensePencil::near_another(const std::vector<std::complex<double>>& values) {
-  constexpr double near = 1e-5;
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (values[k].imag() != 0 && std::isfinite(std::abs(values[k]))) order.push_back(k);
@@ -80,7 +82,7 @@ std::vector<bool> DensePencil::near_another(const std::vector<std::complex<doubl
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const std::complex<double> a = values[order[i]], b = values[order[j]];
-      const double reach = near * std::min(std::abs(a), std::abs(b));
+      const double reach = nearest_part * std::min(std::abs(a), std::abs(b));
       if (b.imag() - a.imag() > reach) break;
       if (std::abs(a - b) <= reach) out[order[i]] = out[order[j]] = true;
     }
@@ -109,7 +111,7 @@ DensePencil::Doubt DensePencil::doubt() const {
         left.size() > 0 ? (eps * size * vectors_[k].norm() + left_over) * left.row(column).norm() : 1e-11 * largest;
     const double moved = std::isfinite(first) ? std::min(first, most) : most;
     if (asked(values_[k])) out[k] = moved;
-    if (near[k]) doubt.blur[k] = moved;
+    if (near[k]) doubt.blur[k] = std::min(moved, nearest_part * std::abs(values_[k]));
   }
   // The QZ algorithm is backward stable for the norm of the pencil, not row by row: with stiff springs on light masses
   // it returns growing eigenvalues that a step of Newton's method moves by about as much as they grow. Their sign means

@@ -344,6 +344,7 @@ TEST(Modes, BlurTellsEqualFromNear) {
       const double distance = std::abs(modes[k + 1].lambda - modes[k].lambda),
                    blur = std::max(modes[k].blur, modes[k + 1].blur);
       EXPECT_EQ(distance <= blur, apart == 0) << modes[k].lambda << " " << distance << " " << blur;
+      EXPECT_GT(blur, 0);
       EXPECT_LE(blur, 1e-10);
     }
   }

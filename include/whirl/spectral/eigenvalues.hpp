@@ -28,7 +28,7 @@ struct Mode {
   int multiplicity = 1;  ///< eigenvalues that rounding does not tell from this one, itself included
   int vectors = 1;       ///< independent right vectors that these have
   /// Of one that vibrates: other eigenvalues within this distance may be the same one, parted by rounding [rad/s].
-  /// Estimated with EigenOptions::rounding; zero where it is known that no other is near.
+  /// Estimated with EigenOptions::rounding; zero where no other is near, and of modes by transfer functions.
   double blur = 0;
 
   /// The real part is nothing but rounding: neither growth nor decay can be told.

@@ -148,15 +148,16 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
 }
 
 void ModeBars::tell(io::StudySummary& summary, const rotor::Options& rotor, const std::set<int>& shown) const {
+  const std::string at_no_speed = "they occur at none of the speeds at which other meshes are computed";
   std::map<std::string, std::set<int>> without;
   for (const auto& [why, ids] : without_)
     std::ranges::set_intersection(ids, shown, std::inserter(without[why], without[why].end()));
   for (const int id : shown)
-    if (any_ && !of_.contains(id)) without["it is at none of the speeds at which other meshes are computed"].insert(id);
+    if (any_ && !of_.contains(id)) without[at_no_speed].insert(id);
   for (const auto& [why, ids] : without)
     if (!ids.empty())
-      summary.warnings.push_back(
-          fmt::format("no error bars of modes {}{}: {}", runs_of(ids), several_ ? " at some speeds" : "", why));
+      summary.warnings.push_back(fmt::format("no error bars of modes {}{}: {}", runs_of(ids),
+                                             several_ && why != at_no_speed ? " at some speeds" : "", why));
   if (shaft_error_ == 0) return;
   summary.set("shaft_mesh.largest_error", shaft_error_, "1");
   warn_of_shaft_mesh(summary, rotor, {{"the frequencies of these modes", shaft_error_, most_of_frequency}});

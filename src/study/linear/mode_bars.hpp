@@ -40,8 +40,7 @@ public:
   /// so that a difference of meshes that vanishes by chance at one speed hides nothing. NaN: unknown.
   [[nodiscard]] std::array<double, 3> at(int id, double speed) const;
   /// The largest error of a frequency by the mesh of the shaft as "shaft_mesh.largest_error" [1], with a warning above
-  /// one per cent that names the element; and which modes of these
-  /// that results show have no bars, and why.
+  /// one per cent that names the element; and which of the modes that results show have no bars, and why.
   void tell(io::StudySummary& summary, const rotor::Options& rotor, const std::set<int>& shown) const;
   /// Whether a mode that grows is a vibration of the elements of the shaft.
   [[nodiscard]] bool of_elements(std::complex<double> lambda) const { return is_of_elements(lambda, resolved_to_); }
