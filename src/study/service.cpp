@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "service_limits.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -22,7 +24,6 @@ using io::Quantity;
 using io::ServiceFact;
 using io::StudySummary;
 
-constexpr double same = 1e-6;                      // of the speed: two speeds are one
 constexpr double damped = std::numbers::pi / 2.5;  // log decrement of an amplification factor of 2.5 (API 684)
 
 // By rising doubt whether the machine can run; what grows for sure is beyond doubt.
@@ -43,12 +44,6 @@ const Quantity* find(const StudySummary& s, const std::string& name) {
   return at == s.values.end() || !std::isfinite(at->second.value) ? nullptr : &at->second;
 }
 
-// "B3" of "bearing.B3.min_thickness".
-std::optional<std::string> between(const std::string& name, const std::string& head, const std::string& tail) {
-  if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) return std::nullopt;
-  return name.substr(head.size(), name.size() - head.size() - tail.size());
-}
-
 // A value between the two computed speeds about a place, in a straight line; they are one where that was computed.
 struct Interpolated {
   double value, below, above;
@@ -60,8 +55,8 @@ std::optional<Interpolated> at_speed(const std::vector<double>& speeds, const st
   std::optional<std::size_t> below, above;
   for (std::size_t k = 0; k < speeds.size(); ++k) {
     if (!std::isfinite(value(k))) continue;
-    if (speeds[k] <= speed * (1 + same) && (!below || speeds[k] > speeds[*below])) below = k;
-    if (speeds[k] >= speed * (1 - same) && (!above || speeds[k] < speeds[*above])) above = k;
+    if (speeds[k] <= speed * (1 + same_speed) && (!below || speeds[k] > speeds[*below])) below = k;
+    if (speeds[k] >= speed * (1 - same_speed) && (!above || speeds[k] < speeds[*above])) above = k;
   }
   if (!below && above && speeds[*above] - speed <= slack) below = above;
   if (!above && below && speed - speeds[*below] <= slack) above = below;
@@ -71,7 +66,7 @@ std::optional<Interpolated> at_speed(const std::vector<double>& speeds, const st
 }
 
 std::string between_words(const Interpolated& at, const std::string& unit) {
-  if (at.above - at.below <= same * at.above) return {};
+  if (at.above - at.below <= same_speed * at.above) return {};
   return fmt::format("between {:.6g} and {:.6g} {}, which were computed", deck::from_si(at.below, unit),
                      deck::from_si(at.above, unit), unit);
 }
@@ -117,7 +112,7 @@ public:
   }
 
 private:
-  [[nodiscard]] bool is_service(double speed) const { return std::abs(speed - speed_) <= same * speed_; }
+  [[nodiscard]] bool is_service(double speed) const { return std::abs(speed - speed_) <= same_speed * speed_; }
   [[nodiscard]] const io::Group* group_of(const StudySummary& s) const {
     const std::string name = io::safe_name(s.name);
     return results_.has_group(name) ? &results_.group(name) : nullptr;
@@ -137,39 +132,6 @@ private:
     vote(count > 0 ? "unstable" : count == 0 ? "stable" : "undetermined", study);
   }
 
-  // A speed at which a machine becomes stable or ceases to be, with its bar [rad/s].
-  struct Limit {
-    double at, error;
-    bool stable_below;
-  };
-
-  // The bar of what was located at a speed.
-  static double error_at(const StudySummary& s, double speed) {
-    double error = 0;
-    const auto take = [&](double value, const std::string& unit, double bar) {
-      if (std::abs(deck::number_to_si(value, unit) - speed) <= same * speed && std::isfinite(bar))
-        error = std::max(error, deck::number_to_si(bar, unit));
-    };
-    for (const io::Bifurcation& b : s.bifurcations) take(b.value, b.unit, b.uncertainty);
-    for (const auto& [name, q] : s.values)
-      if (name == "threshold" || between(name, "unstable.", ".from") || between(name, "unstable.", ".to"))
-        take(q.value, q.unit, q.bar());
-    return error;
-  }
-
-  static std::vector<Limit> limits_of(const StudySummary& s) {
-    std::vector<Limit> out;
-    for (std::size_t k = 1; k < s.ranges.size(); ++k) {
-      const io::StabilityRange &a = s.ranges[k - 1], &b = s.ranges[k];
-      const bool grows_before = a.stability == "unstable", grows_behind = b.stability == "unstable";
-      // Between stretches with a gap nothing was located.
-      if (grows_before == grows_behind || std::abs(a.to - b.from) > same * std::abs(a.to)) continue;
-      const double at = deck::number_to_si(a.to, a.unit);
-      out.push_back({at, error_at(s, at), grows_before ? b.to < b.from : a.from < a.to});
-    }
-    return out;
-  }
-
   // The stretches over the speed in which the machine runs: their word, and its distance from the nearest limit of
   // stability, positive on the stable side. Empty: the study does not reach the speed.
   std::string take_ranges(const StudySummary& s) {
@@ -177,16 +139,16 @@ private:
     bool within = false, below = false, above = false;
     for (const io::StabilityRange& r : s.ranges) {
       const double here = deck::from_si(speed_, r.unit), low = std::min(r.from, r.to), high = std::max(r.from, r.to);
-      below |= low <= here * (1 + same);
-      above |= high >= here * (1 - same);
-      if (low > here * (1 + same) || here > high * (1 + same)) continue;
+      below |= low <= here * (1 + same_speed);
+      above |= high >= here * (1 - same_speed);
+      if (low > here * (1 + same_speed) || here > high * (1 + same_speed)) continue;
       verdict = !within || verdict == r.stability ? r.stability : "undetermined";
       within = true;
     }
     if (!within && below && above) verdict = "undetermined";  // in a gap
-    const Limit* nearest = nullptr;
-    const std::vector<Limit> limits = limits_of(s);
-    for (const Limit& l : limits) {
+    const SpeedLimit* nearest = nullptr;
+    const std::vector<SpeedLimit> limits = limits_of(s);
+    for (const SpeedLimit& l : limits) {
       if (!verdict.empty() && std::abs(l.at - speed_) <= l.error) verdict = "undetermined";
       if (!nearest || std::abs(l.at - speed_) < std::abs(nearest->at - speed_)) nearest = &l;
     }
@@ -333,7 +295,7 @@ private:
       double at = 0;
       if (!name.starts_with("at.") || place == std::string::npos || q.unit != "m" || !std::isfinite(q.value)) continue;
       const auto [end, code] = std::from_chars(name.data() + 3, name.data() + place, at);
-      if (code != std::errc() || end != name.data() + place || std::abs(at - here) > same * here) continue;
+      if (code != std::errc() || end != name.data() + place || std::abs(at - here) > same_speed * here) continue;
       const std::string rest = name.substr(place + (thin ? film : travel).size());
       const std::size_t dot = thin ? rest.size() : rest.rfind('.');
       const std::string journal = rest.substr(0, dot);

@@ -1,0 +1,45 @@
+#include "service_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/deck/units.hpp"
+
+namespace whirl::study {
+namespace {
+
+// The bar of what was located at a speed.
+double error_at(const io::StudySummary& s, double speed) {
+  double error = 0;
+  const auto take = [&](double value, const std::string& unit, double bar) {
+    if (std::abs(deck::number_to_si(value, unit) - speed) <= same_speed * speed && std::isfinite(bar))
+      error = std::max(error, deck::number_to_si(bar, unit));
+  };
+  for (const io::Bifurcation& b : s.bifurcations) take(b.value, b.unit, b.uncertainty);
+  for (const auto& [name, q] : s.values)
+    if (name == "threshold" || between(name, "unstable.", ".from") || between(name, "unstable.", ".to"))
+      take(q.value, q.unit, q.bar());
+  return error;
+}
+
+}  // namespace
+
+std::vector<SpeedLimit> limits_of(const io::StudySummary& s) {
+  std::vector<SpeedLimit> out;
+  for (std::size_t k = 1; k < s.ranges.size(); ++k) {
+    const io::StabilityRange &a = s.ranges[k - 1], &b = s.ranges[k];
+    const bool grows_before = a.stability == "unstable", grows_behind = b.stability == "unstable";
+    // Between stretches with a gap nothing was located.
+    if (grows_before == grows_behind || std::abs(a.to - b.from) > same_speed * std::abs(a.to)) continue;
+    const double at = deck::number_to_si(a.to, a.unit);
+    out.push_back({at, error_at(s, at), grows_before ? b.to < b.from : a.from < a.to});
+  }
+  return out;
+}
+
+std::optional<std::string> between(const std::string& name, const std::string& head, const std::string& tail) {
+  if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) return std::nullopt;
+  return name.substr(head.size(), name.size() - head.size() - tail.size());
+}
+
+}  // namespace whirl::study
