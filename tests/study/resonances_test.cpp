@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "study/linear/response_places.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -92,6 +94,65 @@ TEST(HiddenResonances, AreGivenUpWhereTheyCostTooMuch) {
   Search search;
   EXPECT_TRUE(search.of({10, 1e5}, {}, 1e9, 5).gave_up);
   EXPECT_LE(search.asked, 5U);
+}
+
+HiddenResonances of_machine(std::vector<Complex> (*spectrum)(double), std::size_t most = 200) {
+  Spectra known{{10, spectrum(10)}, {2000, spectrum(2000)}};
+  return hidden_resonances(known, {10, 2000}, {}, {1e9, most}, [&](const std::vector<double>& more) {
+    for (const double s : more)
+      if (std::vector<Complex> found = spectrum(s); !found.empty()) known[s] = std::move(found);
+  });
+}
+
+TEST(HiddenResonances, AreNoEigenvaluesThatDiverge) {
+  const auto diverging = [](double) { return std::vector<Complex>{500, -500}; };
+  const auto [found, gave_up] = of_machine(diverging);
+  EXPECT_TRUE(found.empty());
+  EXPECT_FALSE(gave_up);
+  // A flutter that grows slowly is one, and one that grows fast has no peak.
+  EXPECT_EQ(of_machine([](double) { return std::vector<Complex>{{5, 500}, {5, -500}}; }).found.size(), 1U);
+  EXPECT_TRUE(of_machine([](double) { return std::vector<Complex>{{400, 300}, {400, -300}}; }).found.empty());
+}
+
+// From 700 rad/s on a search finds one pair less: what is next in the order stands far from the speed.
+TEST(HiddenResonances, AreNoJumpsOfTheSpectrum) {
+  const auto [found, gave_up] = of_machine([](double speed) {
+    std::vector<Complex> out;
+    if (speed < 700) add(out, 3000, 0.01);
+    if (speed >= 700) add(out, 20, 0.01);
+    add(out, 5000, 0.01);
+    return out;
+  });
+  EXPECT_TRUE(found.empty());
+  EXPECT_FALSE(gave_up);
+}
+
+// Where spectra fail the search ends, and says so.
+TEST(HiddenResonances, MayBeMissingWhereASpectrumFails) {
+  const auto [found, gave_up] = of_machine([](double speed) {
+    std::vector<Complex> out;
+    if (speed < 20 || speed > 1900) add(out, 500, 0.001);
+    return out;
+  });
+  EXPECT_TRUE(found.empty());
+  EXPECT_TRUE(gave_up);
+}
+
+Response response_of(double speed, double height) {
+  return {speed, height, {{height, {0, height}}}, {}, {}};
+}
+
+// Speeds about a resonance show it: a peak that the curve has beside them is none of theirs.
+TEST(HiddenResonances, AreToldOfWithPeaksThatTheSpeedsAboutThemShow) {
+  const std::vector<Response> curve{response_of(100, 1e-6), response_of(200, 5e-6), response_of(300, 1e-6),
+                                    response_of(500, 1e-6)};
+  const std::vector<Place> places = places_of({1}, {});
+  const std::vector<Response> falling{response_of(220, 4e-6), response_of(240, 3e-6), response_of(260, 2e-6)};
+  EXPECT_TRUE(shown_by(curve, falling, {{240, 50}}, places, "rad/s").empty());
+  const std::vector<Response> top{response_of(399, 2e-6), response_of(400, 3e-6), response_of(401, 2e-6)};
+  const auto words = shown_by(curve, top, {{400, 150}}, places, "rad/s");
+  ASSERT_EQ(words.size(), 1U);
+  EXPECT_EQ(words[0], "400 rad/s (3 um at least, node 1)");
 }
 
 // Of a single machine over the frequency: each pair once, what shows and what has no peak left out.

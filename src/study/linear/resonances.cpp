@@ -16,13 +16,15 @@ using Complex = std::complex<double>;
 constexpr double near_enough = 1.5;   // widths: a resonance between two speeds is seen with 0.8 of its height
 constexpr double settled_part = 0.1;  // of the width
 constexpr double top_within = 2;      // widths from a resonance to its peak
+constexpr double meets_within = 2;    // widths from the modulus to the speed
 
 double width_of(Complex lambda, double speed, double least) {
   return std::max(std::abs(lambda.real()), least * speed);
 }
 
+// A real eigenvalue does not vibrate, whether it falls away or grows.
 bool has_peak(Complex lambda) {
-  return -lambda.real() < no_peak * std::abs(lambda);
+  return std::abs(lambda.real()) < no_peak * std::abs(lambda);
 }
 
 // The eigenvalue of one rank by modulus at two neighbouring speeds, on either side of them.
@@ -37,6 +39,8 @@ struct Bracket {
   [[nodiscard]] bool settled() const {
     return std::min({std::abs(f_a), std::abs(f_b), b - a}) <= settled_part * width();
   }
+  // Not so where the spectrum jumps, as one does that lacks eigenvalues: there the bracket has a change of sign alone.
+  [[nodiscard]] bool meets() const { return std::min(std::abs(f_a), std::abs(f_b)) <= meets_within * width(); }
 };
 
 std::size_t below(const std::vector<Complex>& by_modulus, double speed) {
@@ -129,12 +133,12 @@ HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& co
   };
   sort();
   HiddenResonances out;
-  constexpr int passes = 60;
   std::size_t most = search.most;
-  for (int pass = 0; pass < passes; ++pass) {
+  for (int pass = 0;; ++pass) {
     std::vector<double> ask;
     for (const Bracket& x : brackets_of(known, search)) {
       if (x.settled() || seen(x, computed, tops)) continue;
+      // Secants of a modulus that bends or jumps may move one end only: each third step halves what they leave.
       const bool halve = pass % 3 == 2;
       const double secant = x.secant();
       ask.push_back(halve || !(secant > x.a && secant < x.b) ? (x.a + x.b) / 2 : secant);
@@ -159,6 +163,7 @@ HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& co
       out.gave_up = true;
       continue;
     }
+    if (!x.meets()) continue;
     const double speed = std::clamp(x.secant(), x.a, x.b);
     if (speed >= search.limit || is_one_of(out.found, {speed, x.width()})) continue;
     out.found.push_back({speed, x.width()});

@@ -23,7 +23,7 @@ struct Resonance {
 /// What is looked for, and how far.
 struct ResonanceSearch {
   double limit = 0;           ///< [rad/s]
-  std::size_t most = 0;       ///< spectra that `more` is asked for; beyond them the list is not whole, and `gave_up`
+  std::size_t most = 0;       ///< spectra that `more` is asked for
   double least_width = 3e-5;  ///< of the speed, of what has no damping: nearer speeds say nothing new
 };
 /// Up to resolved_to(). A loss factor, which eigenvalues know nothing of, makes resonances wider: a tenth of what it
@@ -51,12 +51,13 @@ inline constexpr double no_peak = 0.7071;
 /// eigenvalues in the order of their moduli are continuous over the speed, whatever they do. A mode that comes and goes
 /// between two known speeds is not seen. Each resonance is enclosed further, by secants and halves, to a tenth of its
 /// width, with the eigenvalues that `more` puts into `known`, unless it shows: where `computed` stand near enough, or
-/// at one of `tops`, speeds among `known`. Those beyond the limit are left out.
+/// at one of `tops`, speeds among `known`. Those beyond the limit are left out, and jumps of the spectrum, where no
+/// modulus meets the speed.
 ///
 /// Cost: about four spectra a resonance.
 struct HiddenResonances {
   std::vector<Resonance> found;
-  bool gave_up = false;
+  bool gave_up = false;  ///< some may be missing: they need more spectra than `most`, or one that `more` did not put
 };
 [[nodiscard]] HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& computed,
                                                  const std::vector<double>& tops, const ResonanceSearch& search,

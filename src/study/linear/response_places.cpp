@@ -63,6 +63,7 @@ std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector
                                   const std::string& unit) {
   curve.insert(curve.end(), more.begin(), more.end());
   std::ranges::sort(curve, {}, &Response::speed);
+  const auto is_more = [&](double speed) { return std::ranges::find(more, speed, &Response::speed) != more.end(); };
   std::vector<std::string> words;
   for (const Resonance& r : hidden) {
     double height = 0;
@@ -70,7 +71,7 @@ std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector
     for (const Place& place : places) {
       const ResponseCurve of = curve_at(curve, place.of, place.at);
       for (const std::size_t k : of.tops())
-        if (std::abs(of.speed[k] - r.speed) < 2 * r.width && of.height[k] > height)
+        if (std::abs(of.speed[k] - r.speed) < 2 * r.width && is_more(of.speed[k]) && of.height[k] > height)
           height = of.height[k], where = place.label;
     }
     if (height > 0)

@@ -29,7 +29,8 @@ void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, c
 [[nodiscard]] std::string unsettled(const ResponseCurve& curve, std::size_t top, const Peak& peak, bool refined,
                                     const std::string& unit);
 
-/// In words the resonances of `hidden` that the response shows with `more` speeds, with the height that it has there.
+/// In words the resonances of `hidden` at which the response has a peak at one of `more` speeds, with the height that
+/// it has there.
 [[nodiscard]] std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector<Response>& more,
                                                 const std::vector<Resonance>& hidden, const std::vector<Place>& places,
                                                 const std::string& unit);
