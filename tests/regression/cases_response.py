@@ -118,7 +118,7 @@ def wide(h):
     h.true("and peaks are no peaks", peaks(s["off"], "node 2") and all(p.get("verdict") == "undetermined" and "not settled" in p["notes"][-1] for p in peaks(s["off"], "node 2")), str(s["off"]["peaks"]))
     h.true("refined ones are", not near.get("verdict") and not near.get("notes"), str(near))
     h.true("rounding has no peaks", not peaks(s["couple"], "node 2") and peaks(s["couple"], "left, journal"), str(s["couple"].get("peaks")))
-    h.true("frequencies pass over it", warned(s["t"], "pass over resonances", "498.65 rad/s", "node.2.x.from.node.2.x there"), str(s["t"].get("warnings")))
+    h.true("frequencies pass over it", warned(s["t"], "pass over resonances", "498.65 rad/s", "(node.2.x.from.node.2.x reaches ", " m/N at it, ", " m/N at the frequencies beside)"), str(s["t"].get("warnings")))
 
 
 def flushed(h):

@@ -19,6 +19,7 @@
 #include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/linear/mode_bars.hpp"
+#include "study/linear/passed_over.hpp"
 #include "study/linear/resonances.hpp"
 #include "study/linear/transfer_points.hpp"
 #include "study/pieces.hpp"
@@ -37,6 +38,18 @@ using Roundings = std::vector<std::vector<double>>;
 
 void append(std::vector<double>& out, const std::vector<Complex>& matrix) {
   for (const Complex& g : matrix) out.insert(out.end(), {g.real(), g.imag()});
+}
+
+std::vector<double> pack(const Transfer& found) {
+  std::vector<double> flat = found.rounding;
+  append(flat, found.values);
+  return flat;
+}
+Transfer unpack_transfer(const std::vector<double>& flat) {
+  const std::size_t n = flat.size() / 3;
+  Transfer out{{}, {flat.begin(), flat.begin() + static_cast<std::ptrdiff_t>(n)}};
+  for (std::size_t e = n; e < flat.size(); e += 2) out.values.emplace_back(flat[e], flat[e + 1]);
+  return out;
 }
 
 // The machine with constant stiffness and damping in place of its films.
@@ -240,19 +253,6 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   return out;
 }
 
-// The frequencies are those that the user gives: where they pass over a resonance, which answers more than the ones
-// beside it, the largest answers are too small.
-void warn_of_passed_over(io::StudySummary& summary, const std::vector<std::string>& words) {
-  constexpr std::size_t most = 5;
-  if (words.empty()) return;
-  const std::size_t n = std::min(most, words.size());
-  summary.warnings.push_back(fmt::format(
-      "the frequencies pass over resonances narrower than their distance: {}{}. The largest answers are those "
-      "computed: more points, or a range about a resonance, show it",
-      fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(n), ", "),
-      words.size() > n ? fmt::format(", and {} more", words.size() - n) : ""));
-}
-
 }  // namespace
 
 StudyResult FrequencyResponse::run(Context& context) {
@@ -283,19 +283,16 @@ StudyResult FrequencyResponse::run(Context& context) {
   Roundings rounding;  // of the machine
   for (const Way& way : ways) {
     const auto compute = [&](std::size_t i) {
-      const Transfer found = machine.at(way, frequencies[i]);
-      std::vector<double> flat = found.rounding;
-      append(flat, found.values);
+      std::vector<double> flat = pack(machine.at(way, frequencies[i]));
       results.progress(
           fmt::format("{}: {} frequencies on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
       return flat;
     };
     Matrices& found = all.emplace_back();
     for (const auto& flat : distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
-      std::vector<Complex>& matrix = found.emplace_back();
-      const std::size_t n = flat.size() / 3;
-      for (std::size_t e = n; e < flat.size(); e += 2) matrix.emplace_back(flat[e], flat[e + 1]);
-      if (all.size() == 1) rounding.emplace_back(flat.begin(), flat.begin() + static_cast<std::ptrdiff_t>(n));
+      Transfer there = unpack_transfer(flat);
+      found.push_back(std::move(there.values));
+      if (all.size() == 1) rounding.push_back(std::move(there.rounding));
     }
   }
 
@@ -314,12 +311,13 @@ StudyResult FrequencyResponse::run(Context& context) {
   for (auto at = behind; at != eigen.end(); at += 2) eigenvalues.emplace_back(at[0], at[1]);
   const std::vector<Resonance> narrow =
       narrow_resonances(eigenvalues, frequencies, search_of(context.machine.rotor, 0));
+  // Nobody asked for these frequencies: where one has no answer the study goes on.
   const auto there = [&](std::size_t i) {
-    std::vector<double> flat;
-    append(flat, machine.at({"machine"}, narrow[i].speed + 0.1 * narrow[i].width).values);
-    return flat;
+    return answer_of([&] { return pack(machine.at({"machine"}, narrow[i].speed + 0.1 * narrow[i].width)); });
   };
-  const auto at_narrow = distribute(layout, narrow.size(), there, pieces, "resonance", machine.trail());
+  std::vector<Transfer> at_narrow;
+  for (const auto& flat : distribute(layout, narrow.size(), there, pieces, "resonance", machine.trail()))
+    at_narrow.push_back(unpack_transfer(flat));
   const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0]);
 
   auto& group = results.group();
@@ -336,12 +334,14 @@ StudyResult FrequencyResponse::run(Context& context) {
   for (const Way& way : ways) response.child(way.name).set("frequency", way.frequency);
   const std::size_t inputs = options.inputs.size();
   const auto answers = [&](std::size_t at, std::size_t e) { return std::abs(all[0][at][e]) > rounding[at][e]; };
+  std::vector<ResponseName> names;
   std::vector<std::string> silent;
   double most_by_shaft = 0;
   for (std::size_t o = 0; o < outputs.size(); ++o)
     for (std::size_t i = 0; i < inputs; ++i) {
       const std::string name = label(outputs[o]) + ".from." + label(options.inputs[i]),
                         of = unit_of(outputs[o], options.inputs[i]);
+      names.push_back({name, of});
       for (std::size_t w = 0; w < ways.size(); ++w) {
         std::vector<double> column[4];
         for (const auto& matrix : all[w]) {
@@ -379,26 +379,7 @@ StudyResult FrequencyResponse::run(Context& context) {
     summary.set(ways[w].name + ".difference", apart.relative, "1");
     summary.set(ways[w].name + ".difference_at", deck::from_si(apart.frequency, unit), unit);
   }
-  std::vector<std::string> passed_over;
-  for (std::size_t k = 0; k < narrow.size(); ++k) {
-    const auto next =
-        static_cast<std::size_t>(std::ranges::lower_bound(frequencies, narrow[k].speed) - frequencies.begin());
-    double most = 1.1;
-    std::string words;
-    for (std::size_t e = 0; e < all[0][0].size(); ++e) {
-      const double here = std::hypot(at_narrow[k][2 * e], at_narrow[k][2 * e + 1]),
-                   beside = std::max(std::abs(all[0][next - 1][e]), std::abs(all[0][next][e])),
-                   nothing = std::max(rounding[next - 1][e], rounding[next][e]);
-      const double ratio = here / std::max(beside, nothing);
-      if (!(ratio > most)) continue;
-      most = ratio;
-      words = fmt::format("{:.6g} {} ({}.from.{} there {:.3g} {}, {:.3g} beside)", deck::from_si(narrow[k].speed, unit),
-                          unit, label(outputs[e / inputs]), label(options.inputs[e % inputs]), here,
-                          unit_of(outputs[e / inputs], options.inputs[e % inputs]), beside);
-    }
-    if (!words.empty()) passed_over.push_back(words);
-  }
-  warn_of_passed_over(summary, passed_over);
+  warn_of_passed_over(summary, narrow, at_narrow, frequencies, all[0], names, unit);
   if (!silent.empty())
     summary.warnings.push_back(
         fmt::format("no answer but rounding, below 1e-12 of the largest motion of the machine: {}. They are zero, and "

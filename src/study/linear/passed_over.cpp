@@ -1,0 +1,46 @@
+#include "study/linear/passed_over.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "whirl/deck/units.hpp"
+
+namespace whirl::study {
+
+void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>& resonances,
+                         const std::vector<Transfer>& at_resonances, const std::vector<double>& frequencies,
+                         const std::vector<std::vector<std::complex<double>>>& found,
+                         const std::vector<ResponseName>& names, const std::string& unit) {
+  constexpr double as_large = 1.1;
+  constexpr std::size_t shown = 5;
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < resonances.size(); ++k) {
+    const Transfer& there = at_resonances[k];
+    const auto next =
+        static_cast<std::size_t>(std::ranges::lower_bound(frequencies, resonances[k].speed) - frequencies.begin());
+    double most = as_large;
+    std::string words;
+    for (std::size_t e = 0; e < there.values.size(); ++e) {
+      const double here = std::abs(there.values[e]),
+                   beside = std::max(std::abs(found[next - 1][e]), std::abs(found[next][e]));
+      const double ratio = here / std::max(beside, there.rounding[e]);
+      if (!(ratio > most)) continue;
+      most = ratio;
+      words = fmt::format("{:.6g} {} ({} reaches {:.3g} {} at it, {:.3g} {} at the frequencies beside)",
+                          deck::from_si(resonances[k].speed, unit), unit, names[e].name, here, names[e].unit, beside,
+                          names[e].unit);
+    }
+    if (!words.empty()) all.push_back(words);
+  }
+  if (all.empty()) return;
+  const std::size_t n = std::min(shown, all.size());
+  summary.warnings.push_back(fmt::format(
+      "the frequencies pass over resonances narrower than their distance: {}{}. The largest answers are those "
+      "computed: more points, or a range about a resonance, show it",
+      fmt::join(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), ", "),
+      all.size() > n ? fmt::format(", and {} more", all.size() - n) : ""));
+}
+
+}  // namespace whirl::study
