@@ -47,8 +47,10 @@ covers("whirl frequency", b["whirl_frequency_rad_s"], b["uncertainty_whirl_frequ
 
 # So do the peaks of a response, of shaft nodes and of journals: 497.0793 rad/s, 1148.08 um, 45.5430 um and an amplification of 578.6 on 40
 # elements. Bars of cycles leave it out and say so: on 40 elements a second whirl sets in at 679.50 rad/s.
-s = run("shaft_mesh.yaml", "response", "unbalance={u: {planes: [{node: 2, amount: 1e-5 kg m}]}}", "rotor.stiffness_damping=1e-6 s",
-        "studies=[{unbalance_response: {name: r, unbalance: [u], range: {from: 100 rad/s, to: 640 rad/s}, points: 20, nodes: [2]}}, "
+s = run("shaft_mesh.yaml", "response", "unbalance={u: {planes: [{node: 2, amount: 1e-5 kg m}]}, couple: {planes: [{node: 1, amount: 1e-5 kg m}, "
+        "{node: 3, amount: 1e-5 kg m, phase: 180 deg}]}}", "rotor.stiffness_damping=1e-6 s",
+        "studies=[{unbalance_response: {name: r, unbalance: [u], range: {from: 100 rad/s, to: 640 rad/s}, points: 20, nodes: [2], operating_speed: 490 rad/s}}, "
+        "{unbalance_response: {name: still, unbalance: [couple], range: {from: 100 rad/s, to: 640 rad/s}, points: 2, nodes: [2], operating_speed: 490 rad/s}}, "
         "{cycle_branch: {name: c, unbalance: [u], parameter: speed, range: {from: 720 rad/s, to: 640 rad/s}, intervals: 8, degree: 3, points: gauss}}, "
         "{frequency_response: {name: t, speed: 100 rad/s, inputs: [{node: 2, direction: x}], range: {from: 100 rad/s, to: 400 rad/s}, points: 7}}, "
         "{frequency_response: {name: near, speed: 0 rad/s, inputs: [{node: 2, direction: x}], outputs: [{node: 2, direction: x}, {node: 2, direction: slope_x}], "
@@ -58,7 +60,11 @@ covers("transfer function at 400 rad/s", q["value"] * 1e6, q["uncertainty"] * 1e
 # Beside a resonance two elements leave more than the answer; in its middle the shaft has no slope (relative error 656 of 2e-20 1/N once).
 said = {name: [w for w in s[name]["warnings"] if "the mesh of the shaft (2 elements, rotor.element timoshenko) leaves up to" in w] for name in ("near", "r")}
 h.true("a response far off says why", "209 % in these transfer functions: cut the segments shorter" in said["near"][0], str(s["near"]["warnings"]))
-h.true("and so do peaks", "1.5 % in the speeds of these peaks and up to " in said["r"][0] and said["r"][0].endswith("% in their heights: cut the segments shorter"), str(s["r"]["warnings"]))
+h.true("and so do peaks", "1.5 % in the speeds of these peaks and up to " in said["r"][0] and "% in the heights of these peaks and up to " in said["r"][0] and
+       said["r"][0].endswith("% in the amplitudes at operating speed: cut the segments shorter"), str(s["r"]["warnings"]))
+still = s["still"]["values"]["operating.node.2.semi_major"]
+h.true("a node that stands still has no error", still["uncertainty_shaft_mesh"] > 0.1 * still["value"] and still["value"] < 1e-15 and
+       not any("the mesh of the shaft" in w for w in s["still"].get("warnings", [])), f"{still} {s['still'].get('warnings')}")
 h.true("rounding is no answer and has no relative error", "node.2.slope_x.from.node.2.x.relative_error" not in s["near"]["values"] and
        any("no answer but rounding" in w and "node.2.slope_x.from.node.2.x." in w for w in s["near"]["warnings"]), str(s["near"]))
 h.close("what answers has one", s["near"]["values"]["node.2.x.from.node.2.x.relative_error"]["value"], 2.092, 0.005)

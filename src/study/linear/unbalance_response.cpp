@@ -13,6 +13,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/bars/unresolved.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/linear/peak_list.hpp"
@@ -177,6 +178,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   };
   // Equilibria know of no loss factor: of shafts with one stability is not asked.
   const bool lossless = context.machine.rotor.loss_factor == 0;
+  // A resonance takes about four spectra. Those of small dense matrices are cheap: enough for 75 resonances. Each other
+  // one costs as much as many responses: enough for six.
   const ResonanceSearch search = search_of(context.machine.rotor, machine.whole_spectra() ? 300 : 24);
   std::vector<double> counted{curve.front().speed, curve.back().speed}, tops;
   if (lossless) counted = few_speeds(speeds_of(curve));
@@ -192,23 +195,34 @@ StudyResult UnbalanceResponse::run(Context& context) {
   for (const Resonance& r : hidden.found)
     for (const double speed : around(r))
       if (speed > curve.front().speed && speed < curve.back().speed) beside.push_back(speed);
-  if (options.refine && add(beside)) {
+  // Nobody asked for these speeds: where one has no answer the study goes on.
+  bool added = false;
+  const bool reached = !options.refine || has_answer([&] { added = add(beside); });
+  if (added) {
     refine();
     add_tops(counted, curve, places, false);
   }
   if (!options.refine && !beside.empty())
-    if (const auto words = shown_by(curve, at_speeds(beside), hidden.found, places, unit); !words.empty())
+    if (const auto words = shown_by(curve, answer_of([&] { return at_speeds(beside); }), hidden.found, places, unit);
+        !words.empty())
       summary.warnings.push_back(fmt::format(
           "the speeds computed miss resonances that stand between them: {}. 'refine: true' adds speeds there",
           fmt::join(words, ", ")));
-  if (hidden.gave_up)
+  if (hidden.gave_up || !reached)
     summary.warnings.emplace_back(
-        "more resonances than were looked for stand between the speeds computed: a narrower range shows them");
-  if (search.limit < curve.back().speed)
+        "not all resonances between the speeds computed could be looked for: more 'points' or a narrower 'range' show "
+        "what is missing");
+  const double half_wave = half_wave_limit(context.machine.rotor), cut_off = shear_cut_off(context.machine.rotor);
+  if (half_wave < std::min(cut_off, curve.back().speed))
     summary.warnings.push_back(fmt::format(
-        "above {:.6g} {} the elements of the shaft are no beams (half a wave fits into one, or its sections "
-        "shear against one another): no response is resolved there",
-        deck::from_si(search.limit, unit), unit));
+        "above {:.6g} {} the mesh of the shaft is too coarse for the response (half a wave fits into one element): cut "
+        "the segments shorter, or end the range there",
+        deck::from_si(half_wave, unit), unit));
+  if (cut_off < curve.back().speed)
+    summary.warnings.push_back(fmt::format(
+        "above {:.6g} {} the response is not that of the shaft (its sections shear against one another, and beam "
+        "theory ends): end the range there",
+        deck::from_si(cut_off, unit), unit));
 
   StableSpeeds stable;
   if (lossless) {
@@ -275,9 +289,13 @@ StudyResult UnbalanceResponse::run(Context& context) {
   }
   // A speed outside the range may have no answer: the others keep theirs.
   std::string reason;
-  const bool operating_known =
-      operating_speed &&
-      has_answer([&] { put_operating(names, nodes, at_speeds({operating_speed->value}).front(), summary); }, &reason);
+  double operating_rounding = 0;  // [m]
+  const auto take_operating = [&] {
+    const Response there = at_speeds({operating_speed->value}).front();
+    put_operating(names, nodes, there, summary);
+    operating_rounding = motion_rounding * there.largest;
+  };
+  const bool operating_known = operating_speed && has_answer(take_operating, &reason);
   if (operating_speed && !operating_known)
     summary.warnings.push_back(fmt::format(
         "no response at the {} of {:.6g} {}: {}", options.operating_speed ? "operating_speed" : "service_speed",
@@ -313,16 +331,25 @@ StudyResult UnbalanceResponse::run(Context& context) {
   put_films(group, summary, shown, curve, unit);
   put_stability(group, summary, curve, stable, operating_speed, unit);
   warn_of_amplification(summary);
-  const auto most_by_shaft = [&](const char* name) {
-    double most = 0;
+  // The error that the mesh of the shaft leaves in a value, relative to it; zero of one that is but rounding.
+  const auto by_shaft = [&](const std::string& name, double rounding) {
     for (const auto& [of, q] : summary.values)
-      if (const auto error = q.more.find("uncertainty_shaft_mesh"); error != q.more.end() && of.ends_with(name))
-        most = std::max(most, error->second / std::abs(q.value));
-    return most;
+      if (const auto error = q.more.find("uncertainty_shaft_mesh"); of == name && error != q.more.end())
+        return std::abs(q.value) > rounding ? error->second / std::abs(q.value) : 0;
+    return 0.0;
   };
+  double of_speeds = 0, of_heights = 0, of_operating = 0;
+  for (const NamedPeak& p : named) {
+    of_speeds = std::max(of_speeds, by_shaft(p.head + "speed", 0));
+    of_heights = std::max(of_heights, by_shaft(p.head + "semi_major", 0));
+  }
+  for (const int node : nodes)
+    of_operating =
+        std::max(of_operating, by_shaft(fmt::format("operating.node.{}.semi_major", node), operating_rounding));
   warn_of_shaft_mesh(summary, context.machine.rotor,
-                     {{"the speeds of these peaks", most_by_shaft(".speed"), most_of_frequency},
-                      {"their heights", most_by_shaft(".semi_major"), most_of_amplitude}});
+                     {{"the speeds of these peaks", of_speeds, most_of_frequency},
+                      {"the heights of these peaks", of_heights, most_of_amplitude},
+                      {"the amplitudes at operating speed", of_operating, most_of_amplitude}});
   if (operating) put_operating_range(summary, *operating, unit);
   auto& response = group.child("response");
   response.put("speed", speeds_of(curve), "rad/s", "shaft speed");

@@ -18,7 +18,8 @@ void describe(deck::Description<UnbalanceResponseOptions>& d) {
       "speed at which amplitudes are reported; separation margins are counted from it if there is no operating range");
   d.add("operating", &O::operating, "rad/s", deck::positive,
         "operating speeds, lowest to highest, from which separation margins are counted", "API 617, API 684");
-  d.add("refine", &O::refine, "add speeds at peaks until their height is settled");
+  d.add("refine", &O::refine,
+        "add speeds at peaks until their height is settled, and at resonances between the speeds");
 }
 
 double UnbalanceResponse::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {

@@ -15,7 +15,7 @@ struct UnbalanceResponseOptions {
   std::vector<int> nodes;                         ///< nodes to report; bearings and unbalance planes if empty
   std::optional<deck::Quantity> operating_speed;  ///< [rad/s], where amplitudes are reported
   std::optional<deck::Range> operating;           ///< range of speeds [rad/s], for the separation margins
-  bool refine = true;                             ///< add speeds at peaks until their height is settled
+  bool refine = true;                             ///< add speeds at peaks and at resonances between the speeds
 };
 void describe(deck::Description<UnbalanceResponseOptions>& d);
 
