@@ -69,9 +69,7 @@ std::string of_modes(const io::StudySummary& s, const Values& v) {
   for (const std::string& k : criticals) {
     const std::string head = "critical." + k + ".";
     const auto decrement = v.get(head + "log_decrement");
-    std::string verdict =
-        mark_of(study::margin_verdict(v.quantity(head + "amplification_factor"), v.quantity(head + "separation_margin"),
-                                      v.quantity(head + "required_margin")));
+    std::string verdict = mark_of(study::margin_verdict_of(s, head));
     if (decrement && *decrement < 0) verdict = "UNSTABLE";
     const bool apart = verdict.starts_with("damped");
     std::vector<std::string> row{k,

@@ -97,6 +97,8 @@ public:
     // Peaks of a response stand for critical speeds where no modes were computed.
     if (!below_) below_ = std::move(peak_below_);
     if (!above_) above_ = std::move(peak_above_);
+    // What a film has no room for is no vibration where another study gives one.
+    if (!vibration_) vibration_ = std::move(beyond_films_);
     for (const auto* fact :
          {&threshold_, &decrement_, &below_, &above_, &film_, &pressure_, &temperature_, &vibration_})
       if (*fact) service_.facts.push_back(**fact);
@@ -213,9 +215,15 @@ private:
       else if (verdict != words[unstable] && std::max(a.worst, b.worst) == undetermined)
         verdict = words[undetermined];
       if (verdict == words[stable] && decrement <= (std::isfinite(error) ? error : 0)) verdict = words[undetermined];
-      if (std::isfinite(decrement)) {
-        const std::string mark = here ? "" : between_words({decrement, a.speed, b.speed}, s.modes.front().speed_unit);
-        keep(decrement_, {"smallest log decrement", {}, {decrement, "1", bar(error)}, mark, s.name}, false);
+      // Between two speeds a straight line may lie on the wrong side of the border that was located.
+      const bool at_odds = !here && (verdict == words[stable] || verdict == words[unstable]) &&
+                           (decrement > 0) != (verdict == words[stable]);
+      if (std::isfinite(decrement) && !at_odds) {
+        const std::string mark =
+            here ? ""
+                 : joined(between_words({decrement, a.speed, b.speed}, s.modes.front().speed_unit), "without a bar");
+        keep(decrement_, {"smallest log decrement", {}, {decrement, "1", here ? bar(error) : bar(0)}, mark, s.name},
+             false);
       }
       break;
     }
@@ -245,19 +253,25 @@ private:
     for (const io::PeakEntry& p : s.peaks)
       if (p.place.starts_with("node ") && p.verdict != "damped, not critical" && std::isfinite(p.speed.value)) {
         const double factor = p.amplification_factor.value;
-        take_critical(p.speed, std::isfinite(factor) ? fmt::format("amplification {:.3g}", factor) : "", "peak",
-                      p.place, s.name);
+        std::string more = std::isfinite(factor) ? fmt::format("amplification {:.3g}", factor) : "";
+        if (p.verdict == words[undetermined]) more = joined(more, p.verdict);
+        if (std::ranges::any_of(p.notes, [](const std::string& note) { return note.starts_with("no answer"); }))
+          more = joined(more, "no answer: the motion leaves a bearing too little film");
+        take_critical(p.speed, more, "peak", p.place, s.name);
       }
     const Quantity* at = find(s, "operating_speed");
     if (!at || !is_service(deck::number_to_si(at->value, at->unit))) return;
     std::string mark = "linear response, 0-peak";
+    const Quantity* answer = find(s, "operating_speed.answer");
+    const bool touches = answer && answer->value == 0;
+    if (touches) mark += ", no answer: it leaves a bearing too little film";
     if (const Quantity* count = find(s, "operating_speed.unstable_count")) {
       vote_of(static_cast<std::int64_t>(count->value), s.name);
       if (count->value > 0) mark += ", about an unstable equilibrium";
     }
     for (const auto& [name, q] : s.values)
       if (const auto node = between(name, "operating.node.", ".semi_major"))
-        keep(vibration_, {"largest vibration", "node " + *node, q, mark, s.name}, true);
+        keep(touches ? beyond_films_ : vibration_, {"largest vibration", "node " + *node, q, mark, s.name}, true);
   }
 
   void take_static(const StudySummary& s) {
@@ -390,7 +404,7 @@ private:
   io::Service service_;
   std::vector<std::string> verdicts_, voters_;
   std::optional<ServiceFact> threshold_, decrement_, below_, above_, peak_below_, peak_above_, film_, pressure_,
-      temperature_, vibration_;
+      temperature_, vibration_, beyond_films_;
 };
 
 }  // namespace

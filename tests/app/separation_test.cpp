@@ -41,5 +41,8 @@ TEST(Separation, VerdictsLeaveOpenWhatABarContains) {
   EXPECT_EQ(margin_verdict({2.3, "1", {{"uncertainty", 0.1}}}, {0, "1"}, {0, "1"}), "damped, not critical");
   EXPECT_EQ(margin_verdict({2.45, "1", {{"uncertainty", 0.1}}}, {0, "1"}, {0, "1"}), "undetermined");
   EXPECT_EQ(margin_verdict(af, {}, {}), "");
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(whirl::study::separation(2900, infinite, 3000, 3600).required, 0.17);
+  EXPECT_EQ(margin_verdict({infinite, "1"}, {0.01, "1"}, {0.17, "1"}), "too near");
   EXPECT_EQ(margin_verdict({}, {0.1, "1"}, required), "");
 }

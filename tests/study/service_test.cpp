@@ -198,6 +198,12 @@ TEST(Service, TakesCyclesAndResponses) {
   response.set("operating.node.4.semi_major", 35e-6, "m");
   const auto larger = service_of({3600 * rpm, "rpm"}, std::vector{cycles, response}, root);
   EXPECT_EQ(fact(larger, "largest vibration")->place, "node 4");
+  // A linear motion that a film has no room for is no answer where there is another.
+  response.set("operating_speed.answer", 0, "1");
+  const auto beyond = service_of({3600 * rpm, "rpm"}, std::vector{cycles, response}, root);
+  EXPECT_EQ(fact(beyond, "largest vibration")->place, "B1");
+  const auto alone = service_of({3600 * rpm, "rpm"}, std::vector{response}, root);
+  EXPECT_NE(fact(alone, "largest vibration")->mark.find("no answer"), std::string::npos);
 }
 
 // Modes at 1000, 1100, ... rpm, one of each word, with a decrement where they vibrate.

@@ -12,7 +12,7 @@ namespace whirl::study {
 
 void put_margins(io::StudySummary& summary, const std::string& head, double speed, double speed_error, double decrement,
                  double decrement_error, const std::optional<deck::Range>& operating) {
-  if (!(decrement > 0)) return;
+  if (!(decrement >= 0)) return;  // it grows
   const auto bar = [](double x) {
     return std::isfinite(x) ? std::map<std::string, double>{{"uncertainty", x}} : std::map<std::string, double>{};
   };
@@ -21,7 +21,10 @@ void put_margins(io::StudySummary& summary, const std::string& head, double spee
                most = decrement > decrement_error ? std::numbers::pi / (decrement - decrement_error) : none,
                least = std::numbers::pi / (decrement + decrement_error);
   const bool exact = !std::isfinite(decrement_error);  // no mesh
-  summary.set(head + "amplification_factor", factor, "1", bar(exact ? none : std::max(most - factor, factor - least)));
+  // Without damping there is no bound of it.
+  if (decrement > 0)
+    summary.set(head + "amplification_factor", factor, "1",
+                bar(exact ? none : std::max(most - factor, factor - least)));
   if (!operating) return;
   const auto margin = [&](double s, double af) { return separation(s, af, operating->from, operating->to); };
   const Separation here = margin(speed, factor);
@@ -34,14 +37,6 @@ void put_margins(io::StudySummary& summary, const std::string& head, double spee
   const double required =
       std::max(doubt(&Separation::required, speed, most), doubt(&Separation::required, speed, least));
   summary.set(head + "required_margin", here.required, "1", bar(exact || !std::isfinite(most) ? none : required));
-}
-
-std::string margin_verdict_of(const io::StudySummary& summary, const std::string& head) {
-  const auto value = [&](const std::string& name) {
-    const auto at = std::ranges::find(summary.values, head + name, [](const auto& v) { return v.first; });
-    return at == summary.values.end() ? io::Quantity{} : at->second;
-  };
-  return margin_verdict(value("amplification_factor"), value("separation_margin"), value("required_margin"));
 }
 
 }  // namespace whirl::study

@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 
+#include "whirl/spectral/whirl.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -81,6 +83,24 @@ std::vector<Crossing> crossings_of(const std::vector<Station>& stations) {
           out.push_back({border, before.speed, stations[i].speed, f0, f1, m, i, b->put_back || m.put_back});
       }
     }
+  return out;
+}
+
+std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations,
+                                          const std::vector<Crossing>& crossings) {
+  const auto below = [](const Station& s) {
+    return static_cast<int>(std::ranges::count_if(s.modes, [&](const ShaftMode& m) {
+      return spectral::vibrates(m.lambda) && spectral::damping_ratio(m.lambda) <= spectral::overdamped_above &&
+             beyond(Border::critical, m.lambda, s.speed) < 0;
+    }));
+  };
+  std::vector<LostCrossings> out;
+  for (std::size_t k = 1; k < stations.size(); ++k) {
+    int count = below(stations[k]) - below(stations[k - 1]);
+    for (const Crossing& c : crossings)
+      if (c.border == Border::critical && c.station == k) count -= c.f1 < 0 ? 1 : -1;
+    if (count > 0) out.push_back({stations[k - 1].speed, stations[k].speed, count});
+  }
   return out;
 }
 

@@ -45,6 +45,14 @@ struct Crossing {
 };
 [[nodiscard]] std::vector<Crossing> crossings_of(const std::vector<Station>& stations);
 
+/// Between two stations more damped frequencies pass the speed than modes that could be followed there.
+struct LostCrossings {
+  double from = 0, to = 0;  // [rad/s]
+  int count = 0;
+};
+[[nodiscard]] std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations,
+                                                        const std::vector<Crossing>& crossings);
+
 /// A mode that grows at one station and is not listed at the next or the one before: where it does not grow it may lie
 /// outside what was asked for.
 struct LostMode {

@@ -273,6 +273,13 @@ StudyResult Modes::run(Context& context) {
   group.set("speed_unit", unit);
   put_searches(group, summary, speeds, searches);
 
+  if (options.range)
+    for (const LostCrossings& lost : lost_crossings(stations, crossings))
+      summary.warnings.push_back(fmt::format(
+          "between {:.6g} and {:.6g} {} a damped frequency meets the speed {} time{} more than modes could be "
+          "followed: as many critical speeds may be missing. More points show them",
+          deck::from_si(lost.from, unit), deck::from_si(lost.to, unit), unit, lost.count, lost.count == 1 ? "" : "s"));
+
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   std::vector<double> critical_speed, critical_decrement;
   std::vector<std::int64_t> critical_mode;

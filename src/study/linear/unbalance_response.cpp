@@ -293,6 +293,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   const auto take_operating = [&] {
     const Response there = at_speeds({operating_speed->value}).front();
     put_operating(names, nodes, there, summary);
+    summary.set("operating_speed.answer", touched(there, shown).empty() ? 1 : 0, "1");
     operating_rounding = motion_rounding * there.largest;
   };
   const bool operating_known = operating_speed && has_answer(take_operating, &reason);

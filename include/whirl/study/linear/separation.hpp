@@ -10,7 +10,7 @@ namespace whirl::study {
 /// Separation margins, as fractions of the border of the operating range that the critical speed is nearest to.
 struct Separation {
   double actual = 0;    ///< zero inside the range
-  double required = 0;  ///< not a number if the amplification factor is none; zero below 2.5: damped, no critical speed
+  double required = 0;  ///< not a number if the amplification factor is; zero below 2.5: damped, no critical speed
 };
 
 /// With the amplification factor AF = N/(N2 - N1) of a peak:
@@ -27,5 +27,9 @@ struct Separation {
 /// contains the limit. Empty without margins (no unit), and where there is no amplification factor.
 [[nodiscard]] std::string margin_verdict(const io::Quantity& amplification_factor, const io::Quantity& actual,
                                          const io::Quantity& required);
+
+/// The same of a critical speed of `modes`, of which the summary holds `head` + amplification_factor, separation_margin
+/// and required_margin: with margins but no factor it has no damping, and its factor is infinite.
+[[nodiscard]] std::string margin_verdict_of(const io::StudySummary& summary, const std::string& head);
 
 }  // namespace whirl::study
