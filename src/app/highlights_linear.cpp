@@ -72,6 +72,8 @@ std::string of_modes(const io::StudySummary& s, const Values& v) {
     std::string verdict = mark_of(study::margin_verdict_of(s, head));
     if (decrement && *decrement < 0) verdict = "UNSTABLE";
     const bool apart = verdict.starts_with("damped");
+    // Unbalance does not excite it where bearings are alike in both directions.
+    if (study::whirl_of_critical(s, k) == "backward") verdict = verdict == "-" ? "backward" : verdict + ", backward";
     std::vector<std::string> row{k,
                                  v.cell(head + "speed"),
                                  number(v.get(head + "mode")),

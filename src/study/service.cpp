@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "service_limits.hpp"
+#include "service_speeds.hpp"
+#include "whirl/study/linear/separation.hpp"
 
 namespace whirl::study {
 namespace {
@@ -44,33 +45,6 @@ const Quantity* find(const StudySummary& s, const std::string& name) {
   return at == s.values.end() || !std::isfinite(at->second.value) ? nullptr : &at->second;
 }
 
-// A value between the two computed speeds about a place, in a straight line; they are one where that was computed.
-struct Interpolated {
-  double value, below, above;
-};
-
-// `slack` beyond either end: what a revolution of a run-up leaves to the ends of its range.
-std::optional<Interpolated> at_speed(const std::vector<double>& speeds, const std::function<double(std::size_t)>& value,
-                                     double speed, double slack) {
-  std::optional<std::size_t> below, above;
-  for (std::size_t k = 0; k < speeds.size(); ++k) {
-    if (!std::isfinite(value(k))) continue;
-    if (speeds[k] <= speed * (1 + same_speed) && (!below || speeds[k] > speeds[*below])) below = k;
-    if (speeds[k] >= speed * (1 - same_speed) && (!above || speeds[k] < speeds[*above])) above = k;
-  }
-  if (!below && above && speeds[*above] - speed <= slack) below = above;
-  if (!above && below && speed - speeds[*below] <= slack) above = below;
-  if (!below || !above) return std::nullopt;
-  const double a = speeds[*below], b = speeds[*above], w = b > a ? (speed - a) / (b - a) : 0;
-  return Interpolated{(1 - w) * value(*below) + w * value(*above), a, b};
-}
-
-std::string between_words(const Interpolated& at, const std::string& unit) {
-  if (at.above - at.below <= same_speed * at.above) return {};
-  return fmt::format("between {:.6g} and {:.6g} {}, which were computed", deck::from_si(at.below, unit),
-                     deck::from_si(at.above, unit), unit);
-}
-
 std::string joined(const std::string& a, const std::string& b) {
   return a + (a.empty() || b.empty() ? "" : ", ") + b;
 }
@@ -87,6 +61,7 @@ public:
     if (s.kind == "unbalance_response") take_response(s);
     if (s.kind == "static") take_static(s);
     if (s.kind == "cycle_branch") take_cycles(s);
+    if (s.kind == "motion") take_motion(s);
     if (s.kind == "frequency_response") take_transfers(s);
     if (s.kind == "run_up") take_run_up(s);
     if (s.kind == "thd") take_thd(s);
@@ -109,7 +84,7 @@ public:
     missing(temperature_, "highest film temperature",
             "not known: no `thd` and no film with heat gives one at this speed");
     missing(vibration_, "largest vibration",
-            "not known: no `unbalance_response`, `cycle_branch` or `run_up` gives one at this speed");
+            "not known: no `unbalance_response`, `cycle_branch`, `motion` or `run_up` gives one at this speed");
     return std::move(service_);
   }
 
@@ -232,7 +207,9 @@ private:
       if (const auto k = between(name, "critical.", ".speed"); k && std::isfinite(q.value)) {
         const Quantity* delta = find(s, "critical." + *k + ".log_decrement");
         if (delta && delta->value - delta->bar() > damped) continue;
-        take_critical(q, delta ? fmt::format("log decrement {:.3g}", delta->value) : "", "critical speed", "", s.name);
+        const std::string more = delta ? fmt::format("log decrement {:.3g}", delta->value) : "";
+        const bool backward = whirl_of_critical(s, *k) == "backward";
+        take_critical(q, joined(more, backward ? "backward whirl" : ""), "critical speed", "", s.name);
       }
   }
   // The nearest one on either side of the service speed.
@@ -324,6 +301,20 @@ private:
         keep(film_, {"thinnest film", journal, q, mark, s.name}, false);
       else
         keep(vibration_, {"largest vibration", journal, {q.value / 2, "m", bar(q.bar() / 2)}, mark, s.name}, true);
+    }
+  }
+
+  // Half of the travel of the journals in a motion in time.
+  void take_motion(const StudySummary& s) {
+    const io::Group* group = group_of(s);
+    if (!group || !group->has_attribute("speed") || !is_service(group->real("speed"))) return;
+    for (const auto& [name, q] : s.values) {
+      if (!name.starts_with("peak_to_peak.") || q.unit != "m" || !std::isfinite(q.value)) continue;
+      const std::size_t dot = name.rfind('.'), head = std::string_view("peak_to_peak.").size();
+      const std::string mark =
+          fmt::format("motion in time ({}), half of peak to peak in {}",
+                      group->has_attribute("motion") ? group->text("motion") : s.status, name.substr(dot + 1));
+      keep(vibration_, {"largest vibration", name.substr(head, dot - head), {q.value / 2, "m"}, mark, s.name}, true);
     }
   }
 

@@ -69,6 +69,15 @@ def bearing_map(h):
     h.true("the map of a soft bearing is complete with two points", s["status"] == "completed" and s["points"] == 2, s["status"])
 
 
+def several(h):
+    """Between the folds at 856.73 and 867.08 rad/s the branch of whirl has three cycles at one speed, below them one."""
+    branch = ("studies=[{cycle_branch: {name: w, origin: hopf, parameter: speed, range: {from: 800 rad/s, to: 900 rad/s}, at: [860 rad/s, 880 rad/s], "
+              "step: {initial: 1 rad/s, min: 0.0001 rad/s, max: 8 rad/s}, intervals: 40, degree: 4, points: gauss}}]")
+    s = h.run(h.source / "inputs/rigid_rotor/stability_chart.yaml", "several", [branch])["w"]
+    h.true("says that 860 rad/s has three cycles", any("passes 860 rad/s 3 times" in w for w in s.get("warnings", [])), str(s.get("warnings")))
+    h.true("880 rad/s has one", not any("passes 880" in w for w in s.get("warnings", [])))
+
+
 if __name__ == "__main__":
     program, source, *launcher = sys.argv[1:]
     harness = Harness(program, source, launcher)
@@ -81,4 +90,5 @@ if __name__ == "__main__":
     flips(harness, studies["flips"])
     duffing(harness)
     bearing_map(harness)
+    several(harness)
     harness.finish()

@@ -164,6 +164,36 @@ TEST(Service, TakesFilmsPressuresAndGrowthOfAStatic) {
   EXPECT_TRUE(fact(elsewhere, "thinnest film")->study.empty());
 }
 
+TEST(Service, TakesMotionsAndTheSenseOfCriticalSpeeds) {
+  io::StudySummary motion, modes;
+  motion.name = motion.kind = "motion";
+  motion.set("peak_to_peak.B1.x", 40e-6, "m");
+  motion.set("peak_to_peak.B1.y", 50e-6, "m");
+  modes.name = modes.kind = "modes";
+  modes.set("critical.1.speed", 3500, "rpm");
+  modes.set("critical.1.mode", 2, "1");
+  modes.set("critical.2.speed", 3800, "rpm");
+  modes.set("critical.2.mode", 3, "1");
+  for (const auto& [speed, mode, whirl] :
+       {std::tuple{3000.0, 2, "forward"}, {3400.0, 2, "backward"}, {3400.0, 3, "forward"}}) {
+    modes.modes.emplace_back();
+    modes.modes.back().speed = speed;
+    modes.modes.back().speed_unit = "rpm";
+    modes.modes.back().whirl = whirl;
+    modes.modes.back().more["mode"] = mode;
+  }
+  io::Group root;
+  root.child("motion").set("speed", 3600 * rpm);
+  root.child("motion").set("motion", std::string("period-2"));
+  const auto s = service_of({3600 * rpm, "rpm"}, std::vector{motion, modes}, root);
+  EXPECT_NEAR(fact(s, "largest vibration")->value.value, 25e-6, 1e-15);
+  EXPECT_NE(fact(s, "largest vibration")->mark.find("period-2"), std::string::npos);
+  EXPECT_NE(fact(s, "critical speed below")->mark.find("backward whirl"), std::string::npos);
+  EXPECT_EQ(fact(s, "critical speed above")->mark.find("backward whirl"), std::string::npos);
+  const auto elsewhere = service_of({3000 * rpm, "rpm"}, std::vector{motion}, root);
+  EXPECT_TRUE(fact(elsewhere, "largest vibration")->study.empty());
+}
+
 TEST(Service, TakesCyclesAndResponses) {
   io::StudySummary cycles, response;
   cycles.name = "balanced";  // its group says that the parameter is the speed

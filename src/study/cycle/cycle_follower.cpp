@@ -287,6 +287,14 @@ StudyResult CycleFollower::run() {
     if (c.bifurcation == BranchChange::of_mesh) waves.add(c.parameter, {{}});
   }
   waves.warn(results.summary(), unit_);
+  for (const auto& wanted : options_.at)
+    if (const int times = record_.passes(wanted.value / scale_); times > 1) {
+      const std::string key = number_text(wanted.value, unit_);
+      results.summary().warnings.push_back(fmt::format(
+          "the branch passes {} {} {} times: at.{} is the first of these cycles, the table of the branch has "
+          "the others beside it",
+          key, unit_, times, key));
+    }
   doubt(verdict);
   conclude(results.summary(), verdict, kind(), unit_);
   warn_of_shaft_mesh(results.summary(), context_.machine, context_.layout);

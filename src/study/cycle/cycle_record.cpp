@@ -188,6 +188,13 @@ bool CycleRecord::one_sided() const {
   return std::all_of(stable.begin(), stable.end(), [&](double s) { return s == stable.front(); });
 }
 
+int CycleRecord::passes(double parameter) const {
+  const auto& at = table_.column("parameter");
+  int times = 0;
+  for (std::size_t k = 1; k < at.size(); ++k) times += (at[k - 1] < parameter) != (at[k] < parameter) ? 1 : 0;
+  return times;
+}
+
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
                          system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
   const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), places_.names.size());

@@ -37,6 +37,8 @@ public:
                                     system::Plant& system) const;
   /// Whether all points so far are stable, or all unstable.
   [[nodiscard]] bool one_sided() const;
+  /// How often the branch passes a value of the parameter, in the unit of the table.
+  [[nodiscard]] int passes(double parameter) const;
   /// The points so far, by their stability.
   [[nodiscard]] BranchVerdict verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.

@@ -47,4 +47,20 @@ std::string margin_verdict_of(const io::StudySummary& summary, const std::string
   return margin_verdict(factor, actual, value("required_margin"));
 }
 
+std::string whirl_of_critical(const io::StudySummary& summary, const std::string& k) {
+  const auto value = [&](const std::string& name) {
+    const auto at =
+        std::ranges::find(summary.values, "critical." + k + "." + name, [](const auto& v) { return v.first; });
+    return at == summary.values.end() ? std::numeric_limits<double>::quiet_NaN() : at->second.value;
+  };
+  const double speed = value("speed"), id = value("mode");
+  const io::ModeEntry* nearest = nullptr;
+  for (const io::ModeEntry& m : summary.modes) {
+    const auto number = m.more.find("mode");
+    if (number == m.more.end() || number->second != id) continue;
+    if (!nearest || std::abs(m.speed - speed) < std::abs(nearest->speed - speed)) nearest = &m;
+  }
+  return nearest ? nearest->whirl : std::string();
+}
+
 }  // namespace whirl::study

@@ -1,4 +1,6 @@
-#include "service_limits.hpp"
+#include "service_speeds.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +37,27 @@ std::vector<SpeedLimit> limits_of(const io::StudySummary& s) {
     out.push_back({at, error_at(s, at), grows_before ? b.to < b.from : a.from < a.to});
   }
   return out;
+}
+
+std::optional<Interpolated> at_speed(const std::vector<double>& speeds, const std::function<double(std::size_t)>& value,
+                                     double speed, double slack) {
+  std::optional<std::size_t> below, above;
+  for (std::size_t k = 0; k < speeds.size(); ++k) {
+    if (!std::isfinite(value(k))) continue;
+    if (speeds[k] <= speed * (1 + same_speed) && (!below || speeds[k] > speeds[*below])) below = k;
+    if (speeds[k] >= speed * (1 - same_speed) && (!above || speeds[k] < speeds[*above])) above = k;
+  }
+  if (!below && above && speeds[*above] - speed <= slack) below = above;
+  if (!above && below && speed - speeds[*below] <= slack) above = below;
+  if (!below || !above) return std::nullopt;
+  const double a = speeds[*below], b = speeds[*above], w = b > a ? (speed - a) / (b - a) : 0;
+  return Interpolated{(1 - w) * value(*below) + w * value(*above), a, b};
+}
+
+std::string between_words(const Interpolated& at, const std::string& unit) {
+  if (at.above - at.below <= same_speed * at.above) return {};
+  return fmt::format("between {:.6g} and {:.6g} {}, which were computed", deck::from_si(at.below, unit),
+                     deck::from_si(at.above, unit), unit);
 }
 
 std::optional<std::string> between(const std::string& name, const std::string& head, const std::string& tail) {

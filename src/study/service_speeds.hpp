@@ -1,0 +1,44 @@
+#pragma once
+// What studies found at a speed, between speeds, and where a machine becomes stable or ceases to be.
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "whirl/io/summary.hpp"
+
+namespace whirl::study {
+
+/// Two speeds nearer than this part of them are one.
+constexpr double same_speed = 1e-6;
+
+/// A speed at which a machine becomes stable or ceases to be, with its bar [rad/s].
+struct SpeedLimit {
+  double at, error;
+  bool stable_below;
+};
+
+/// Those between the stretches over the speed that a branch or modes found (`StudySummary::ranges`).
+[[nodiscard]] std::vector<SpeedLimit> limits_of(const io::StudySummary& summary);
+
+/// A value between the two computed speeds about a place, in a straight line; they are one where that was computed.
+struct Interpolated {
+  double value, below, above;
+};
+
+/// Of values over speeds that at `speed`; nothing outside these speeds, but for `slack` beyond either end: what a
+/// revolution of a run-up leaves to the ends of its range. Values that are no numbers are passed over.
+[[nodiscard]] std::optional<Interpolated> at_speed(const std::vector<double>& speeds,
+                                                   const std::function<double(std::size_t)>& value, double speed,
+                                                   double slack);
+
+/// "between A and B UNIT, which were computed"; empty where the speed itself was.
+[[nodiscard]] std::string between_words(const Interpolated& at, const std::string& unit);
+
+/// What stands between `head` and `tail` in a name, "B3" of "bearing.B3.min_thickness"; nothing if the name is another.
+[[nodiscard]] std::optional<std::string> between(const std::string& name, const std::string& head,
+                                                 const std::string& tail);
+
+}  // namespace whirl::study
