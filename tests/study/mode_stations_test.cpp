@@ -21,25 +21,26 @@ Station at(double speed, const std::vector<std::pair<int, Lambda>>& modes) {
   return s;
 }
 
-std::vector<LostCrossings> lost(const std::vector<Station>& stations) {
-  return lost_crossings(stations, crossings_of(stations));
-}
-
 }  // namespace
 
 TEST(ModeStations, ACrossingThatIsFollowedIsNotLost) {
-  EXPECT_TRUE(lost({at(0, {{1, {-1, 100}}, {2, {-1, 300}}}), at(200, {{1, {-1, 90}}, {2, {-1, 310}}})}).empty());
+  EXPECT_TRUE(
+      lost_crossings({at(0, {{1, {-1, 100}}, {2, {-1, 300}}}), at(200, {{1, {-1, 90}}, {2, {-1, 310}}})}).empty());
 }
 
 TEST(ModeStations, WhereATrackBreaksItsCrossingIsLost) {
-  const auto found = lost({at(0, {{1, {-1, 100}}, {2, {-1, 300}}}), at(200, {{3, {-1, 90}}, {2, {-1, 310}}}),
-                           at(250, {{3, {-1, 90}}, {2, {-1, 310}}})});
+  const auto found = lost_crossings({at(0, {{1, {-1, 100}}, {2, {-1, 300}}}), at(200, {{3, {-1, 90}}, {2, {-1, 310}}}),
+                                     at(250, {{3, {-1, 90}}, {2, {-1, 310}}})});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].from, 0);
   EXPECT_EQ(found[0].to, 200);
   EXPECT_EQ(found[0].count, 1);
 }
 
+TEST(ModeStations, WhatComesFromOverdampedMotionHasCrossedNothing) {
+  EXPECT_TRUE(lost_crossings({at(0, {{1, {-1, 300}}}), at(200, {{1, {-1, 310}}, {2, {-10, 90}}})}).empty());
+}
+
 TEST(ModeStations, WhatHardlyVibratesIsNoCriticalSpeed) {
-  EXPECT_TRUE(lost({at(0, {{1, {-500, 100}}}), at(200, {{2, {-500, 90}}})}).empty());
+  EXPECT_TRUE(lost_crossings({at(0, {{1, {-500, 100}}}), at(200, {{2, {-500, 90}}})}).empty());
 }

@@ -86,20 +86,20 @@ std::vector<Crossing> crossings_of(const std::vector<Station>& stations) {
   return out;
 }
 
-std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations,
-                                          const std::vector<Crossing>& crossings) {
-  const auto below = [](const Station& s) {
+std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations) {
+  constexpr double critical = 0.2;  // damping ratio of an amplification factor of 2.5: others are no critical speeds
+  // Modes of `s` on one side of the speed that `other` does not have. Those that results do not show have no identity.
+  const auto alone = [](const Station& s, const Station& other, bool below) {
     return static_cast<int>(std::ranges::count_if(s.modes, [&](const ShaftMode& m) {
-      return spectral::vibrates(m.lambda) && spectral::damping_ratio(m.lambda) <= spectral::overdamped_above &&
-             beyond(Border::critical, m.lambda, s.speed) < 0;
+      return m.id > 0 && !mode_with(m.id, other) && spectral::vibrates(m.lambda) &&
+             spectral::damping_ratio(m.lambda) < critical && (beyond(Border::critical, m.lambda, s.speed) < 0) == below;
     }));
   };
   std::vector<LostCrossings> out;
   for (std::size_t k = 1; k < stations.size(); ++k) {
-    int count = below(stations[k]) - below(stations[k - 1]);
-    for (const Crossing& c : crossings)
-      if (c.border == Border::critical && c.station == k) count -= c.f1 < 0 ? 1 : -1;
-    if (count > 0) out.push_back({stations[k - 1].speed, stations[k].speed, count});
+    const Station &before = stations[k - 1], &here = stations[k];
+    const int count = std::min(alone(before, here, false), alone(here, before, true));
+    if (count > 0) out.push_back({before.speed, here.speed, count});
   }
   return out;
 }

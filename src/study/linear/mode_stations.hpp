@@ -45,13 +45,14 @@ struct Crossing {
 };
 [[nodiscard]] std::vector<Crossing> crossings_of(const std::vector<Station>& stations);
 
-/// Between two stations more damped frequencies pass the speed than modes that could be followed there.
+/// Two stations between which critical speeds may be missing: modes above the speed end at the first one, and as many
+/// below it begin at the second, since they could not be followed. Modes damped too much for a critical speed (API 684)
+/// do not count.
 struct LostCrossings {
   double from = 0, to = 0;  // [rad/s]
   int count = 0;
 };
-[[nodiscard]] std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations,
-                                                        const std::vector<Crossing>& crossings);
+[[nodiscard]] std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations);
 
 /// A mode that grows at one station and is not listed at the next or the one before: where it does not grow it may lie
 /// outside what was asked for.

@@ -274,11 +274,11 @@ StudyResult Modes::run(Context& context) {
   put_searches(group, summary, speeds, searches);
 
   if (options.range)
-    for (const LostCrossings& lost : lost_crossings(stations, crossings))
+    for (const LostCrossings& lost : lost_crossings(stations))
       summary.warnings.push_back(fmt::format(
-          "between {:.6g} and {:.6g} {} a damped frequency meets the speed {} time{} more than modes could be "
-          "followed: as many critical speeds may be missing. More points show them",
-          deck::from_si(lost.from, unit), deck::from_si(lost.to, unit), unit, lost.count, lost.count == 1 ? "" : "s"));
+          "between {:.6g} and {:.6g} {} critical speeds may be missing: {} of the modes above the speed could not be "
+          "followed, and as many below it are new. More points show them",
+          deck::from_si(lost.from, unit), deck::from_si(lost.to, unit), unit, lost.count));
 
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   std::vector<double> critical_speed, critical_decrement;
