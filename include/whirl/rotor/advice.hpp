@@ -13,9 +13,9 @@ namespace whirl::rotor {
 /// Source: Gavalas (2022), sec. 2.1.
 [[nodiscard]] std::vector<std::string> advice(const Options& rotor);
 
-/// A line for each disc whose polar moment of inertia exceeds twice its diametral one, both with those of its geometry:
-/// J_p <= 2 J_d for every body, with equality for a thin disc (sum m (x^2 + y^2) <= sum m (x^2 + y^2 + 2 z^2)). A
-/// hundredth is left to rounded numbers.
+/// A line for each disc with moments of inertia that no body has. J_p <= 2 J_d holds for every body, with equality for
+/// a thin disc: sum m (x^2 + y^2) <= sum m (x^2 + y^2 + 2 z^2). Moments of the disc's geometry are added first. A
+/// hundredth is left to rounded numbers. Units: kg m^2.
 [[nodiscard]] std::vector<std::string> impossible_inertias(const Options& rotor);
 
 }  // namespace whirl::rotor

@@ -313,7 +313,7 @@ StudyResult FrequencyResponse::run(Context& context) {
       narrow_resonances(eigenvalues, frequencies, search_of(context.machine.rotor, 0));
   // Nobody asked for these frequencies: where one has no answer the study goes on.
   const auto there = [&](std::size_t i) {
-    return answer_of([&] { return pack(machine.at({"machine"}, narrow[i].speed + 0.1 * narrow[i].width)); });
+    return answer_of([&] { return pack(machine.at({"machine"}, around(narrow[i])[1])); });
   };
   std::vector<Transfer> at_narrow;
   for (const auto& flat : distribute(layout, narrow.size(), there, pieces, "resonance", machine.trail()))

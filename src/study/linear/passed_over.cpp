@@ -13,7 +13,7 @@ void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>
                          const std::vector<Transfer>& at_resonances, const std::vector<double>& frequencies,
                          const std::vector<std::vector<std::complex<double>>>& found,
                          const std::vector<ResponseName>& names, const std::string& unit) {
-  constexpr double as_large = 1.1;
+  constexpr double as_large = 1.1;  // less than a tenth more is no news beside the answers computed
   constexpr std::size_t shown = 5;
   std::vector<std::string> all;
   for (std::size_t k = 0; k < resonances.size(); ++k) {

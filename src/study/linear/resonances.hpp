@@ -42,8 +42,8 @@ inline constexpr double no_peak = 0.7071;
                                                        const std::vector<double>& computed,
                                                        const ResonanceSearch& search);
 
-/// Speeds around a resonance at which a response shows it. None of them is that of the resonance itself, where an
-/// undamped machine has no response.
+/// Speeds around a resonance at which a response shows it: on either side, and just beside its top. At the top itself
+/// an undamped machine has no response.
 [[nodiscard]] std::vector<double> around(const Resonance& resonance);
 
 /// Resonances between known speeds that do not show in a response at the rising speeds `computed`, by rising speed.

@@ -22,8 +22,8 @@ public:
   using Count = std::function<std::vector<int>(const std::vector<double>& speeds)>;
 
   StableSpeeds() = default;
-  /// Of rising speeds; `first`: those of them that are counted first, in any order, with both ends of all. Calls
-  /// `count` a few times.
+  /// Of rising speeds. Those in `first` are counted first; they are among the speeds, in any order, with both ends.
+  /// Calls `count` a few times.
   StableSpeeds(std::vector<double> speeds, const std::vector<double>& first, const Count& count);
 
   [[nodiscard]] bool known() const { return !speeds_.empty(); }

@@ -178,8 +178,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   };
   // Equilibria know of no loss factor: of shafts with one stability is not asked.
   const bool lossless = context.machine.rotor.loss_factor == 0;
-  // A resonance takes about four spectra. Those of small dense matrices are cheap: enough for 75 resonances. Each other
-  // one costs as much as many responses: enough for six.
+  // A resonance takes about four spectra. Small dense matrices have cheap ones: enough for 75 resonances. A spectrum of
+  // a larger machine costs as much as many responses: enough for six.
   const ResonanceSearch search = search_of(context.machine.rotor, machine.whole_spectra() ? 300 : 24);
   std::vector<double> counted{curve.front().speed, curve.back().speed}, tops;
   if (lossless) counted = few_speeds(speeds_of(curve));

@@ -32,8 +32,7 @@ struct Separation {
 /// and required_margin: with margins but no factor it has no damping, and its factor is infinite.
 [[nodiscard]] std::string margin_verdict_of(const io::StudySummary& summary, const std::string& head);
 
-/// Sense of whirl of critical speed K of `modes`, that of its mode at the speed computed nearest to it; empty: not
-/// known.
+/// Sense of whirl of critical speed K of `modes`: that of its mode at the nearest computed speed. Empty if not known.
 [[nodiscard]] std::string whirl_of_critical(const io::StudySummary& summary, const std::string& k);
 
 }  // namespace whirl::study
