@@ -1,9 +1,7 @@
 #include "whirl/core/symmetric.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "whirl/core/error.hpp"
+#include "whirl/core/lapack.hpp"
 
 extern "C" {
 void dsyev_(const char* job, const char* triangle, const int* n, double* a, const int* lda, double* w, double* work,
@@ -21,12 +19,8 @@ SymmetricPairs pairs(Eigen::MatrixXd& a, bool vectors, const std::string& what, 
   SymmetricPairs out;
   out.values.resize(a.rows());
   if (a.rows() == 0) return out;
-  double wanted = 0;
-  int size = -1, info = 0;
-  call(out.values.data(), &wanted, &size, &info);
-  std::vector<double> work(static_cast<std::size_t>(std::max(1.0, wanted)));
-  size = static_cast<int>(work.size());
-  if (info == 0) call(out.values.data(), work.data(), &size, &info);
+  const int info = with_workspace<double>(
+      [&](double* work, const int* size, int* result) { call(out.values.data(), work, size, result); });
   if (info > static_cast<int>(a.rows())) throw NotConverged(what + " is not positive definite");
   if (info != 0) throw NotConverged(what + ": its eigenvalues did not converge");
   if (vectors) out.vectors = std::move(a);
@@ -38,7 +32,7 @@ SymmetricPairs pairs(Eigen::MatrixXd& a, bool vectors, const std::string& what, 
 SymmetricPairs symmetric_pairs(Eigen::MatrixXd a, const std::string& what) {
   if (!a.allFinite()) throw NotConverged(what + " is not finite");
   const int n = static_cast<int>(a.rows());
-  return pairs(a, true, what, [&](double* values, double* work, int* size, int* info) {
+  return pairs(a, true, what, [&](double* values, double* work, const int* size, int* info) {
     dsyev_("V", "L", &n, a.data(), &n, values, work, size, info);
   });
 }
@@ -46,7 +40,7 @@ SymmetricPairs symmetric_pairs(Eigen::MatrixXd a, const std::string& what) {
 SymmetricPairs symmetric_pairs(Eigen::MatrixXd a, Eigen::MatrixXd b, const std::string& what, bool vectors) {
   if (!a.allFinite() || !b.allFinite()) throw NotConverged(what + ": a matrix is not finite");
   const int n = static_cast<int>(a.rows()), type = 1;
-  return pairs(a, vectors, what, [&](double* values, double* work, int* size, int* info) {
+  return pairs(a, vectors, what, [&](double* values, double* work, const int* size, int* info) {
     dsygv_(&type, vectors ? "V" : "N", "L", &n, a.data(), &n, b.data(), &n, values, work, size, info);
   });
 }

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "whirl/core/lapack.hpp"
+
 extern "C" {
 void zgesdd_(const char* job, const int* m, const int* n, std::complex<double>* a, const int* lda, double* s,
              std::complex<double>* u, const int* ldu, std::complex<double>* vt, const int* ldvt,
@@ -29,16 +31,10 @@ using Eigen::VectorXd;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// Calls a routine of LAPACK with the workspace that it asks for in a first call; false if it has no answer.
+// Calls a routine of LAPACK; false if it has no answer.
 template <class Number, class Call>
-bool with_workspace(const Call& call) {
-  Number wanted{};
-  int size = -1, info = 0;
-  call(&wanted, &size, &info);
-  std::vector<Number> work(static_cast<std::size_t>(std::max(1.0, std::real(wanted))));
-  size = static_cast<int>(work.size());
-  if (info == 0) call(work.data(), &size, &info);
-  return info == 0;
+bool answers(const Call& call) {
+  return core::with_workspace<Number>(call) == 0;
 }
 
 // `job` is S for thin factors, A for whole ones, N for none; V* is returned in `vt`.
@@ -51,7 +47,7 @@ VectorXd decompose(char job, MatrixXcd& a, MatrixXcd& u, MatrixXcd& vt) {
   const int ldu = std::max<int>(1, static_cast<int>(u.rows())), ldvt = std::max<int>(1, static_cast<int>(vt.rows()));
   std::vector<double> real(static_cast<std::size_t>(least) * (5 * least + 2 * most + 7));
   std::vector<int> integer(static_cast<std::size_t>(8 * least));
-  const bool found = a.allFinite() && with_workspace<Complex>([&](Complex* work, const int* size, int* info) {
+  const bool found = a.allFinite() && answers<Complex>([&](Complex* work, const int* size, int* info) {
                        zgesdd_(&job, &m, &n, a.data(), &m, sizes.data(), u.data(), &ldu, vt.data(), &ldvt, work, size,
                                real.data(), integer.data(), info);
                      });
@@ -79,7 +75,7 @@ VectorXd singular_values(MatrixXd a) {
   VectorXd sizes(least);
   if (least == 0) return sizes;
   std::vector<int> integer(static_cast<std::size_t>(8 * least));
-  const bool found = a.allFinite() && with_workspace<double>([&](double* work, const int* size, int* info) {
+  const bool found = a.allFinite() && answers<double>([&](double* work, const int* size, int* info) {
                        dgesdd_("N", &m, &n, a.data(), &m, sizes.data(), nullptr, &one, nullptr, &one, work, size,
                                integer.data(), info);
                      });
@@ -100,7 +96,7 @@ Eigenpairs real_eigenpairs(MatrixXd a, bool vectors) {
   if (n == 0) return out;
   VectorXd re(n), im(n);
   MatrixXd v(columns, columns);
-  const bool found = a.allFinite() && with_workspace<double>([&](double* work, const int* size, int* info) {
+  const bool found = a.allFinite() && answers<double>([&](double* work, const int* size, int* info) {
                        dgeev_("N", vectors ? "V" : "N", &n, a.data(), &n, re.data(), im.data(), nullptr, &ldv, v.data(),
                               &ldv, work, size, info);
                      });
@@ -126,7 +122,7 @@ Eigenpairs complex_eigenpairs(MatrixXcd a) {
   Eigenpairs out{Eigen::VectorXcd(n), MatrixXcd(n, n)};
   if (n == 0) return out;
   std::vector<double> real(static_cast<std::size_t>(2 * n));
-  const bool found = a.allFinite() && with_workspace<Complex>([&](Complex* work, const int* size, int* info) {
+  const bool found = a.allFinite() && answers<Complex>([&](Complex* work, const int* size, int* info) {
                        zgeev_("N", "V", &n, a.data(), &n, out.values.data(), nullptr, &one, out.vectors.data(), &n,
                               work, size, real.data(), info);
                      });
