@@ -23,6 +23,9 @@ struct LineModes {
   std::vector<std::vector<double>> shapes;  // [mode][node], largest entry one
 };
 
+/// Order at which the frequencies converge.
+inline constexpr double line_order = 2;
+
 /// The lowest `count` modes that vibrate, with the nodes `held` (1-based, possibly none) at rest; fewer if the shaft
 /// has fewer. Frequencies converge with h^2 from above. Not collective. Throws core::InputError for bad nodes and for a
 /// coupling without the stiffness that is asked for.

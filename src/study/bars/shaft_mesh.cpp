@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "study/bars/summary_bars.hpp"
 #include "whirl/deck/codecs.hpp"
 #include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/divide.hpp"
@@ -55,7 +56,8 @@ void warn_of_shaft_mesh(io::StudySummary& summary, const system::Machine& machin
   warn(summary, machine.rotor, "bars without 'uncertainty_shaft_mesh'");
 }
 
-void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<ShaftError>& errors) {
+void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<ShaftError>& errors,
+                        const std::string& element) {
   std::vector<std::string> words;
   for (const ShaftError& e : errors)
     if (e.part > e.most)
@@ -63,8 +65,34 @@ void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, 
                                   100 * e.part, e.what));
   if (words.empty()) return;
   summary.warnings.push_back(
-      fmt::format("the mesh of the shaft ({} elements, rotor.element {}) leaves {}: cut the segments shorter",
-                  rotor.segments.size(), deck::name_of(rotor.element), fmt::join(words, " and ")));
+      fmt::format("the mesh of the shaft ({} elements, {}) leaves {}: cut the segments shorter", rotor.segments.size(),
+                  element.empty() ? fmt::format("rotor.element {}", deck::name_of(rotor.element)) : element,
+                  fmt::join(words, " and ")));
+}
+
+void put_shaft_error(io::StudySummary& summary, const rotor::Options& rotor, double part, const std::string& element) {
+  if (part == 0) return;
+  summary.set("shaft_mesh.largest_error", part, "1");
+  warn_of_shaft_mesh(summary, rotor, {{"these frequencies", part, most_of_frequency}}, element);
+}
+
+std::vector<double> bars_of_shaft(const std::vector<double>& here, const rotor::Options& rotor, double order,
+                                  const std::function<std::vector<double>(int parts)>& on) {
+  MeshLaw law;
+  law.shaft_order = order;
+  Bars bars(here, law);
+  bars.add(Axis::shaft, 0.5, answer_of([&] { return on(2); }));
+  if (rotor.segments.size() < 4 * here.size()) bars.add(Axis::shaft, 0.25, answer_of([&] { return on(4); }));
+  std::vector<double> out;
+  for (std::size_t k = 0; k < here.size(); ++k) out.push_back(bars[k].total());
+  return out;
+}
+
+double largest_part(const std::vector<double>& bars, const std::vector<double>& frequencies) {
+  double out = 0;
+  for (std::size_t k = 0; k < bars.size(); ++k)
+    if (frequencies[k] > 0 && std::isfinite(bars[k])) out = std::max(out, bars[k] / frequencies[k]);
+  return out;
 }
 
 system::Train with_cut_shaft(system::Train train, int parts) {

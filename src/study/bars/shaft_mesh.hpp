@@ -1,6 +1,8 @@
 #pragma once
 // The mesh of the shaft beside the one in use: every segment cut into shorter elements.
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "study/bars/film_mesh.hpp"
@@ -43,8 +45,23 @@ struct ShaftError {
 };
 /// Of a frequency or a speed, and of an amplitude, which moves by more where a resonance is near.
 inline constexpr double most_of_frequency = 0.01, most_of_amplitude = 0.05;
-/// Warns of those that are larger than is right, with the element and what to do, in one sentence.
-void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<ShaftError>& errors);
+/// Warns of those that are larger than is right, with the element and what to do, in one sentence. `element`: as the
+/// sentence names it, where it is not that of the rotor.
+void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<ShaftError>& errors,
+                        const std::string& element = {});
+/// Puts the largest error of a frequency as "shaft_mesh.largest_error" [1] and warns of it; nothing of zero, that is
+/// where it is not known.
+void put_shaft_error(io::StudySummary& summary, const rotor::Options& rotor, double part,
+                     const std::string& element = {});
+
+/// Bars of the lowest frequencies of a shaft, which hang on its mesh alone and converge with `order`: `on` computes
+/// them again with every segment cut in two, and in four where the shaft has fewer than four elements for each of them.
+/// There two meshes may agree by chance: sqrt(12)/h of a bar of linear elements is the highest frequency on n and
+/// the n-th on 2 n of them. NaN: unknown.
+[[nodiscard]] std::vector<double> bars_of_shaft(const std::vector<double>& here, const rotor::Options& rotor,
+                                                double order, const std::function<std::vector<double>(int parts)>& on);
+/// The largest of the bars over their frequencies; zero without any that is known.
+[[nodiscard]] double largest_part(const std::vector<double>& bars, const std::vector<double>& frequencies);
 
 /// The train with every beam of its shaft cut into `parts` equal ones; what stands at nodes stays in its place.
 [[nodiscard]] system::Train with_cut_shaft(system::Train train, int parts);

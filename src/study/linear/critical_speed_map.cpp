@@ -2,10 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
+#include "study/bars/shaft_mesh.hpp"
 #include "study/common.hpp"
+#include "study/linear/mode_bars.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/critical_speeds.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -38,45 +42,93 @@ double CriticalSpeedMap::memory(const system::Machine& machine, const LayoutOpti
   return 8 * 6 * n * n;
 }
 
+namespace {
+
+constexpr std::array whirl_directions{rotor::Whirl::forward, rotor::Whirl::backward};
+constexpr std::array whirl_names{"forward", "backward"};
+
+// What the shaft of a train stands on.
+struct Springs {
+  std::vector<rotor::SpringAt> at;
+  std::vector<rotor::Stand> stands;
+};
+
+Springs springs_of(const system::Train& train) {
+  Springs out;
+  std::map<std::string, int> stand_of;  // by bearing
+  for (const system::Support& s : train.supports) {
+    out.at.push_back({s.node, s.has_pedestal ? static_cast<int>(out.stands.size()) : -1});
+    stand_of[s.name] = out.at.back().stand;
+    if (s.has_pedestal) out.stands.push_back({s.mass, s.stiffness});
+  }
+  for (const system::Element& e : train.elements)
+    if (system::holds_shaft(e)) out.at.push_back({e.node, e.to_pedestal ? stand_of.at(*e.to_pedestal) : -1});
+  return out;
+}
+
+// The larger one of the bars of the neighbours, which stand at the rising places `known` among all of them.
+double bar_between(const std::vector<std::size_t>& known, const std::vector<std::vector<double>>& bars, std::size_t i,
+                   std::size_t k) {
+  const auto right = std::ranges::lower_bound(known, i);
+  const auto left = *right == i ? right : std::prev(right);
+  const double a = bars[static_cast<std::size_t>(left - known.begin())][k],
+               b = bars[static_cast<std::size_t>(right - known.begin())][k];
+  return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b);
+}
+
+}  // namespace
+
 StudyResult CriticalSpeedMap::run(Context& context) {
   const system::Train train = system::train_of(context.machine);
   auto& results = context.results;
-  std::vector<rotor::SpringAt> springs;
-  std::vector<rotor::Stand> stands;
-  std::map<std::string, int> stand_of;  // by bearing
-  for (const system::Support& s : train.supports) {
-    springs.push_back({s.node, s.has_pedestal ? static_cast<int>(stands.size()) : -1});
-    stand_of[s.name] = springs.back().stand;
-    if (s.has_pedestal) stands.push_back({s.mass, s.stiffness});
-  }
-  for (const system::Element& e : train.elements)
-    if (system::holds_shaft(e)) springs.push_back({e.node, e.to_pedestal ? stand_of.at(*e.to_pedestal) : -1});
   const auto count = static_cast<std::size_t>(options.count), points = static_cast<std::size_t>(options.points);
-  std::vector<double> stiffness, speeds[2];
+  const auto speeds_of = [&](const system::Train& of, double stiffness, rotor::Whirl whirl) {
+    const Springs springs = springs_of(of);
+    return rotor::critical_speeds(of.rotor, springs.at, stiffness, whirl, options.count, springs.stands);
+  };
+  const bool barred = has_shaft_mesh(context.machine, context.layout);
+  const std::vector<std::size_t> few = few_of(points);
+  std::vector<double> stiffness, speeds[2], bars[2];
+  double largest = 0;
   core::agree(context.comm, [&] {
     for (std::size_t i = 0; i < points; ++i) {
       const double part = static_cast<double>(i) / static_cast<double>(points - 1);
       stiffness.push_back(options.stiffness.from * std::pow(options.stiffness.to / options.stiffness.from, part));
-      for (const auto whirl : {rotor::Whirl::forward, rotor::Whirl::backward}) {
-        std::vector<double> found =
-            rotor::critical_speeds(train.rotor, springs, stiffness.back(), whirl, options.count, stands);
+    }
+    for (std::size_t w = 0; w < 2; ++w) {
+      std::vector<std::vector<double>> known;  // bars at few of them
+      for (std::size_t i = 0; i < points; ++i) {
+        std::vector<double> found = speeds_of(train, stiffness[i], whirl_directions[w]);
+        if (barred && known.size() < few.size() && few[known.size()] == i) {
+          known.push_back(bars_of_shaft(found, train.rotor, order_of_shaft(train.rotor.element), [&](int parts) {
+            return speeds_of(with_cut_shaft(train, parts), stiffness[i], whirl_directions[w]);
+          }));
+          largest = std::max(largest, largest_part(known.back(), found));
+          known.back().resize(count, unknown);
+        }
         found.resize(count, io::no_value);
-        std::vector<double>& to = speeds[whirl == rotor::Whirl::forward ? 0 : 1];
-        to.insert(to.end(), found.begin(), found.end());
+        speeds[w].insert(speeds[w].end(), found.begin(), found.end());
       }
+      for (std::size_t i = 0; barred && i < points; ++i)
+        for (std::size_t k = 0; k < count; ++k) bars[w].push_back(bar_between(few, known, i, k));
     }
   });
   auto& table = results.group().child("map");
   table.put("stiffness", stiffness, "N/m", "of each bearing, in x and y");
-  const char* names[] = {"forward", "backward"};
   for (std::size_t w = 0; w < 2; ++w) {
-    table.put(names[w], {points, count}, speeds[w], "rad/s",
-              fmt::format("undamped critical speeds of {} whirl [stiffness][number]", names[w]));
+    table.put(whirl_names[w], {points, count}, speeds[w], "rad/s",
+              fmt::format("undamped critical speeds of {} whirl [stiffness][number]", whirl_names[w]));
+    if (barred)
+      table.put(fmt::format("{}_uncertainty", whirl_names[w]), {points, count}, bars[w], "rad/s",
+                "estimated error from the mesh of the shaft");
     for (std::size_t k = 0; k < count; ++k)
       for (const auto& [end, at] : {std::pair{"softest", std::size_t{0}}, {"stiffest", points - 1}})
-        if (!std::isnan(speeds[w][at * count + k]))
-          results.summary().set(fmt::format("{}.{}.{}", end, names[w], k + 1), speeds[w][at * count + k], "rad/s");
+        if (const std::size_t place = at * count + k; !std::isnan(speeds[w][place]))
+          results.summary().set(fmt::format("{}.{}.{}", end, whirl_names[w], k + 1), speeds[w][place], "rad/s",
+                                barred ? std::map<std::string, double>{{"uncertainty", bars[w][place]}}
+                                       : std::map<std::string, double>{});
   }
+  put_shaft_error(results.summary(), train.rotor, largest);
   table.label_each({io::numbered(count, "critical")});
   results.summary().points = static_cast<long>(points);
   return results.finish("completed", true);

@@ -158,9 +158,7 @@ void ModeBars::tell(io::StudySummary& summary, const rotor::Options& rotor, cons
     if (!ids.empty())
       summary.warnings.push_back(fmt::format("no error bars of modes {}{}: {}", runs_of(ids),
                                              several_ && why != at_no_speed ? " at some speeds" : "", why));
-  if (shaft_error_ == 0) return;
-  summary.set("shaft_mesh.largest_error", shaft_error_, "1");
-  warn_of_shaft_mesh(summary, rotor, {{"the frequencies of these modes", shaft_error_, most_of_frequency}});
+  put_shaft_error(summary, rotor, shaft_error_);
 }
 
 std::array<double, 3> ModeBars::at(int id, double speed) const {

@@ -15,7 +15,6 @@
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
-#include "study/linear/line_modes.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_margins.hpp"
 #include "study/linear/mode_reduction.hpp"
@@ -23,11 +22,11 @@
 #include "study/linear/mode_tables.hpp"
 #include "study/linear/mode_values.hpp"
 #include "study/linear/peak_list.hpp"
+#include "study/linear/shaft_alone.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
-#include "whirl/rotor/frequencies.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -36,26 +35,6 @@ namespace {
 
 // Modes above those asked for: some come down between two speeds, and a coarse mesh may have one in another place.
 constexpr int beyond_over_speeds = 8, beyond_over_meshes = 2, beyond_to_find = 60;
-
-// Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
-StudyResult rigid_modes(Context& context, const ModesOptions& options) {
-  rotor::Options shaft = context.machine.rotor;
-  shaft.reduction = {};
-  std::vector<int> pinned;
-  if (options.supports == ModesOptions::Supports::pinned) pinned = system::support_nodes(context.machine);
-  const auto frequencies =
-      rotor::natural_frequencies(plan(context, Sharing::machine).space, shaft, pinned, options.count);
-  auto& summary = context.results.summary();
-  for (std::size_t k = 0; k < frequencies.size(); ++k) {
-    summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
-    summary.modes.push_back({0, 0, frequencies[k], 0, "planar", "rad/s", {}, name_of(StabilityClass::undamped)});
-  }
-  context.results.group()
-      .child("spectrum")
-      .put("frequency", frequencies, "rad/s", "undamped natural frequencies in one plane");
-  summary.points = 1;
-  return context.results.finish("completed", true);
-}
 
 // The regions of searches by transfer functions, over speed; of one speed in the summary too.
 void put_searches(io::Group& group, io::StudySummary& summary, const std::vector<double>& speeds,
@@ -87,8 +66,7 @@ void put_searches(io::Group& group, io::StudySummary& summary, const std::vector
 }  // namespace
 
 StudyResult Modes::run(Context& context) {
-  if (options.motion != ModesOptions::Motion::bending) return line_modes(context, options);
-  if (options.supports != ModesOptions::Supports::films) return rigid_modes(context, options);
+  if (of_shaft_alone(options)) return modes_of_shaft_alone(context, options);
   const std::vector<double> speeds = options.all_speeds();
   const std::vector<double> shape_speeds = options.all_shape_speeds();
   const std::string unit = options.unit();

@@ -1,11 +1,14 @@
 #pragma once
-// Torsional and axial modes of a shaft.
+// Undamped modes of the shaft without its films: bending on pins or free, torsion, and along the axis.
 
 #include "whirl/study/linear/modes.hpp"
 
 namespace whirl::study {
 
-/// The frequencies and shapes of `options.motion`, torsion or axial. Collective.
-[[nodiscard]] StudyResult line_modes(Context& context, const ModesOptions& options);
+/// Whether these modes are of the shaft alone.
+[[nodiscard]] bool of_shaft_alone(const ModesOptions& options);
+
+/// The frequencies with their bars, and the shapes of torsion and axial motion. Collective.
+[[nodiscard]] StudyResult modes_of_shaft_alone(Context& context, const ModesOptions& options);
 
 }  // namespace whirl::study
