@@ -89,9 +89,19 @@ def ended(study):
             for v in study.summary.get("variants", [])}
 
 
+def verdicts_of(study):
+    """Row -> what its studies say of its stability; nothing of results without that column."""
+    words = study.get("table/verdict")
+    return {} if words is None else dict(zip(rows_of(study), map(str, words)))
+
+
 def table_of_columns(study, caption, columns, table):
-    names, quantity, reasons = rows_of(study), quantity_of(study), ended(study)
+    names, quantity, reasons, verdicts = rows_of(study), quantity_of(study), ended(study), verdicts_of(study)
     rows, head = [[n] for n in names], ["variant"]
+    if any(v != "-" for v in verdicts.values()):
+        head.append("verdict")
+        for row, n in zip(rows, names):
+            row.append(verdicts.get(n, "-"))
     if quantity and quantity[2]:
         head.append(quantity[0] + (f" [{quantity[1]}]" if quantity[1] else ""))
         for row, n in zip(rows, names):
@@ -140,7 +150,8 @@ def everything(study, table):
     names = rows_of(study)
     if not 0 < len(names) <= 16:
         return []
-    rows = []
+    verdicts = verdicts_of(study)
+    rows = [["verdict", *[verdicts.get(n, "-") for n in names]]] if any(v != "-" for v in verdicts.values()) else []
     for c in columns_of(study):
         unit, values, bars = readable(study, c)
         rows.append([head_of(study, c["name"], unit), *[with_bar(v, b) for v, b in zip(values, bars)]])
@@ -152,6 +163,10 @@ def brief(study):
     quantity, failed = quantity_of(study), sum(map(bool, ended(study).values()))
     variants = study.summary.get("variants", [])
     out = [f"{len(variants)} variants" + (f" over {quantity[0]}" if quantity else "")]
+    verdicts = verdicts_of(study)
+    unstable = [n for n in rows_of(study) if "unstable" in verdicts.get(n, "") or "loses stability" in verdicts.get(n, "")]
+    if unstable:
+        out.append("unstable, at least in part: " + ", ".join(unstable[:6]) + (f" and {len(unstable) - 6} more" if len(unstable) > 6 else ""))
     main = {c["name"]: c for c in main_columns(study)}
     for t in study.summary.get("trends", []):
         if len(out) > 3 or t["column"] not in main or t["sign"] not in ("+", "-") or not t["difference"]:

@@ -1,6 +1,7 @@
 #pragma once
 // The numbers that a study was asked for, in units that a person reads.
 
+#include <span>
 #include <string>
 
 #include "cells.hpp"
@@ -11,8 +12,9 @@ namespace whirl::app {
 /// Loads and journal positions, critical speeds with margins or the least damped modes, peaks with amplification
 /// factors and margins, thresholds, cycles asked for, kinds of motion, limits of a bearing map, variants of a sweep,
 /// with their bars: a few lines or a small table by the kind of the study, from its values. Empty if it has none of
-/// these. Lengths in um (mm from 10 mm on), forces in kN, pressures in MPa, margins in percent.
-[[nodiscard]] std::string highlights(const io::StudySummary& study);
+/// these. Lengths in um (mm from 10 mm on), forces in kN, pressures in MPa, margins in percent. `before` are the
+/// studies that ended earlier: a sweep shows those of the deck as given beside its variants.
+[[nodiscard]] std::string highlights(const io::StudySummary& study, std::span<const io::StudySummary> before);
 
 // By kinds of studies; `v` has the values of the study.
 [[nodiscard]] std::string of_modes(const io::StudySummary& s, const Values& v);

@@ -37,7 +37,7 @@ std::string headline_text(const io::StudySummary& s) {
   return text;
 }
 
-std::string answer_text(const io::StudySummary& s) {
+std::string answer_text(const io::StudySummary& s, std::span<const io::StudySummary> before) {
   std::string text;
   for (const io::Bifurcation& b : s.bifurcations) {
     text += fmt::format("  {} at {} {}{}{}{}\n", io::name_of(b.type), b.parameter,
@@ -55,7 +55,7 @@ std::string answer_text(const io::StudySummary& s) {
   }
   for (const io::Suspicion& x : s.suspected)
     text += fmt::format("  not resolved from {:.7g} to {:.7g} {}: {}\n", x.from, x.to, x.unit, x.reason);
-  return text + highlights(s);
+  return text + highlights(s, before);
 }
 
 std::string service_text(const io::Service& service) {

@@ -177,6 +177,7 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
 
 std::vector<std::string> unusual(const Deck& d) {
   std::vector<std::string> all = unusual_lubricants(d.machine);
+  for (std::string& line : negative_damping(d.machine)) all.push_back(std::move(line));
   for (std::string& line : rotor::impossible_inertias(d.machine.rotor)) all.push_back(std::move(line));
   if (d.bars == BarsFrom::none)
     all.emplace_back(

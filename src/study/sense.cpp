@@ -91,6 +91,28 @@ std::vector<std::string> unusual_lubricants(const system::Machine& machine) {
   return lines;
 }
 
+std::vector<std::string> negative_damping(const system::Machine& machine) {
+  std::vector<std::string> lines;
+  const auto look = [&](const std::string& place, const std::array<double, 4>& constant, const auto& table) {
+    // Rows of a table are added to the constant part.
+    double least_x = constant[0], least_y = constant[3];
+    for (const auto& row : table) {
+      least_x = std::min(least_x, constant[0] + row.c_xx);
+      least_y = std::min(least_y, constant[3] + row.c_yy);
+    }
+    std::vector<std::string> found;
+    if (least_x < 0) found.push_back(fmt::format("C_xx = {:.4g} N s/m", least_x));
+    if (least_y < 0) found.push_back(fmt::format("C_yy = {:.4g} N s/m", least_y));
+    if (found.empty()) return;
+    lines.push_back(fmt::format("{}: negative damping ({}) feeds the vibration: is its sign right?", place,
+                                fmt::join(found, ", ")));
+  };
+  for (const system::Bearing& b : machine.bearings)
+    if (const auto* film = film::find<film::Linear>(b.film)) look("bearings." + b.name, film->damping, film->table);
+  for (const system::Element& e : machine.elements) look("elements." + e.name, e.damping, e.table);
+  return lines;
+}
+
 void put_film_numbers(io::StudySummary& summary, const std::string& head, const system::Support& support,
                       const film::FilmReport& report, double load, double speed) {
   const film::Geometry& g = support.geometry;

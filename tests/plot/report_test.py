@@ -154,12 +154,12 @@ def sweep(folder):
         table, trends = table_of(study, "Variants"), table_of(study, "Trends")
         everything = "".join(report.all_values(study))
         words = brief.of(study)
-    assert table.head == ["variant", "clearance [\u00b5m]", "balanced: threshold [rpm]", "balanced: hopf 2 [rpm]", "not completed"], table.head
-    assert table.rows == [["as given", "200", "5025 \u00b1 12", "\u2013", ""], ["narrow", "160", "4000", "7000.0 \u00b1 3.0", ""],
-                          ["wide", "240", "6500.0 \u00b1 9.0", "\u2013", "balanced: ended at 7000 rpm: contact"]], table.rows
+    assert table.head == ["variant", "verdict", "clearance [\u00b5m]", "balanced: threshold [rpm]", "balanced: hopf 2 [rpm]", "not completed"], table.head
+    assert table.rows == [["as given", "loses stability", "200", "5025 \u00b1 12", "\u2013", ""], ["narrow", "loses stability", "160", "4000", "7000.0 \u00b1 3.0", ""],
+                          ["wide", "-", "240", "6500.0 \u00b1 9.0", "\u2013", "balanced: ended at 7000 rpm: contact"]], table.rows
     assert trends.rows == [["balanced: threshold", "clearance", "160 to 240 \u00b5m", "rises", "2500 rpm"]], trends.rows
-    assert "All values of the variants (5)" in everything and "balanced: nondimensional load" in everything
-    assert words == "2 variants over clearance; balanced: threshold rises from 4000 to 6500.0 \u00b1 9.0 rpm; 1 with a study that did not complete", words
+    assert "All values of the variants (6)" in everything and "balanced: nondimensional load" in everything
+    assert words == "2 variants over clearance; unstable, at least in part: as given, narrow; balanced: threshold rises from 4000 to 6500.0 \u00b1 9.0 rpm; 1 with a study that did not complete", words
 
 
 def others_in_brief(folder):

@@ -230,7 +230,7 @@ def sweep(root):
         variant.attrs.update({"title": name, "order": k + 1})
         root.copy(root["studies/balanced"], variant, "balanced")
         variant["balanced/branch/y"][...] *= 1 + 0.2 * k
-    rows = {"variant": ["as given", "narrow", "wide"], "clearance": [1.0, 0.8, 1.2]}
+    rows = {"variant": ["as given", "narrow", "wide"], "verdict": ["loses stability", "loses stability", "-"], "clearance": [1.0, 0.8, 1.2]}
     put(g.create_group("table"), **rows, **{"balanced.hopf.1": [5025.0, 4000.0, 6500.0]})
 
 

@@ -112,7 +112,7 @@ void ModeValues::put_stability(io::StudySummary& summary, const std::vector<Stat
                 : undamped ? StabilityClass::undamped
                            : StabilityClass::stable,
                 count);
-    if (doubtful) verdict.doubt(static_cast<int>(i));
+    if (doubtful && count == 0) verdict.doubt(static_cast<int>(i));  // one that grows for sure decides
     // An undamped mode begins to grow at its station, and ceases to at the next.
     for (; i + 1 < stations.size() && next != events.end(); ++next) {
       const double end = stations[i + 1].speed;

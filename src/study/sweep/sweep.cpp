@@ -156,7 +156,7 @@ StudyResult Sweep::run(Context& context) {
   std::vector<SweepRow> rows;
   std::size_t failed = 0, asked = 0;
   if (options.as_given) {
-    SweepRow row{"as given", {}, {}};
+    SweepRow row{"as given", {}, {}, {}};
     for (const auto& s : context.summaries)
       if (s.kind != key && std::any_of(variants_.front().deck->studies.begin(), variants_.front().deck->studies.end(),
                                        [&](const auto& one) { return s.name == one->name(); }))
@@ -166,7 +166,10 @@ StudyResult Sweep::run(Context& context) {
   auto& folder = results.group().child("variants");
   for (std::size_t k = 0; k < n; ++k) {
     const auto summaries = stores[k]->summaries();
-    rows.push_back({variants_[k].name, variants_[k].coordinates, {summaries.begin(), summaries.end()}});
+    rows.push_back({variants_[k].name,
+                    variants_[k].coordinates,
+                    {summaries.begin(), summaries.end()},
+                    unusual(*variants_[k].deck)});
     io::Group& group = folder.child(io::safe_name(variants_[k].name));
     io::leave_in_file(group, stores[k]->path(), "state/studies");
     group.set("title", variants_[k].name);

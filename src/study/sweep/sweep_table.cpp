@@ -1,11 +1,15 @@
 #include "study/sweep/sweep_table.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <numeric>
+
+#include "whirl/study/sweep/verdict_words.hpp"
 
 namespace whirl::study {
 namespace {
@@ -163,15 +167,70 @@ std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows, const std::v
   return all;
 }
 
+std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows) {
+  struct Kept {
+    std::string study, text;
+    std::vector<std::size_t> rows = {};
+    bool differ = false;
+  };
+  std::vector<Kept> all;
+  std::map<std::string, std::size_t> known;
+  const auto take = [&](std::size_t row, const std::string& study, const std::string& text) {
+    std::string words = study + ": ";
+    for (const char c : text)
+      if (const bool digit = c >= '0' && c <= '9'; !digit || words.back() != '#') words += digit ? '#' : c;
+    // 1.5 and 12, 1e-9 and 0.3 are but numbers.
+    for (const char* inner : {"#.#", "#e-#", "#e+#"})
+      for (std::size_t at = words.find(inner); at != std::string::npos; at = words.find(inner))
+        words.replace(at, std::string_view(inner).size(), "#");
+    const auto [place, added] = known.emplace(words, all.size());
+    if (added) all.push_back({study, text});
+    Kept& kept = all[place->second];
+    if (kept.rows.empty() || kept.rows.back() != row) kept.rows.push_back(row);
+    kept.differ = kept.differ || kept.text != text;
+  };
+  std::size_t variants = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    variants += !rows[r].coordinates.empty();
+    for (const std::string& line : rows[r].unusual) take(r, {}, line);
+    for (const io::StudySummary& s : rows[r].studies)
+      for (const std::string& line : s.warnings) take(r, s.name, line);
+  }
+  constexpr std::size_t most = 6;
+  std::vector<std::string> out;
+  for (const Kept& k : all) {
+    if (k.study.empty() && k.rows.size() == variants) continue;
+    std::vector<std::string> names;
+    for (const std::size_t r : k.rows) names.push_back("'" + rows[r].name + "'");
+    const std::size_t shown = std::min(most, names.size());
+    std::string where =
+        k.rows.size() == rows.size() && rows.size() > 1
+            ? "all rows"
+            : fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    if (where != "all rows" && shown < names.size()) where += fmt::format(" and {} more", names.size() - shown);
+    if (k.differ) where += fmt::format(" (numbers of {})", names.front());
+    out.push_back(fmt::format("{}{}{}: {}", where, k.study.empty() ? "" : ", ", k.study, k.text));
+  }
+  return out;
+}
+
 void put_table(Findings& results, const std::vector<SweepRow>& rows) {
   auto& summary = results.summary();
+  for (std::string& line : warnings_of(rows)) summary.warnings.push_back(std::move(line));
   summary.columns = table_of(rows);
   summary.trends = trends_of(rows, summary.columns);
-  std::vector<std::string> names;
-  for (const SweepRow& row : rows) names.push_back(row.name);
+  std::vector<std::string> names, verdicts;
+  for (const SweepRow& row : rows) {
+    names.push_back(row.name);
+    const VariantVerdict verdict = verdict_of(row.studies);
+    verdicts.push_back(verdict.words.empty() ? name_of(verdict.found) : verdict.words);
+  }
   auto& table = results.group().child("table");
-  std::string order = "variant";
+  std::string order = "variant\nverdict";
   table.put("variant", names, "the deck as it stands, and the variants in their order");
+  table.put("verdict", verdicts,
+            "what its studies say of its stability: peaks, margins and factors of an unstable equilibrium are those of "
+            "no motion");
   const auto put = [&](const std::string& name, std::vector<double> values, const std::string& unit,
                        const std::string& text) {
     table.put(io::safe_name(name), std::move(values), unit, text);

@@ -14,6 +14,7 @@ struct SweepRow {
   std::string name;
   std::vector<Coordinate> coordinates;
   std::vector<io::StudySummary> studies;
+  std::vector<std::string> unusual = {};  ///< about its deck
 };
 
 /// Values of `study` as columns of a table: its named values, and of its bifurcations how many of each type there are,
@@ -28,7 +29,12 @@ struct SweepRow {
 [[nodiscard]] std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows,
                                                const std::vector<io::SweepColumn>& columns);
 
-/// All of it into the results.
+/// Warnings of the rows, each once with the names of the rows that it belongs to. Words that differ in their numbers
+/// alone are the same: they stand with the numbers of the first row. What is unusual about all decks is left out; the
+/// deck itself says it.
+[[nodiscard]] std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows);
+
+/// All of it into the results, with the verdict on each row.
 void put_table(Findings& results, const std::vector<SweepRow>& rows);
 
 }  // namespace whirl::study

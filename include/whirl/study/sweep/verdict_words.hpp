@@ -1,0 +1,28 @@
+#pragma once
+// What the studies of one variant of a sweep say of its stability.
+
+#include <span>
+#include <string>
+
+#include "whirl/io/summary.hpp"
+
+namespace whirl::study {
+
+/// By rising weight. `in_part`: unstable somewhere in the range of a study, not everywhere.
+enum class Found { nothing, stable, undamped, undetermined, no_result, in_part, unstable };
+/// "-", "stable", "undamped", "undetermined", "no result", "unstable in part", "UNSTABLE".
+[[nodiscard]] const char* name_of(Found found);
+
+struct VariantVerdict {
+  Found found = Found::nothing;
+  std::string words = {};  ///< "stable 300 to 1470 rpm, unstable to 3000 rpm"; empty where nothing is known
+};
+
+/// By the ranges of a study, else by its stability, else by its modes in the films.
+[[nodiscard]] VariantVerdict verdict_of(const io::StudySummary& study);
+
+/// Of several studies: the words once if all that know of stability agree, else "STUDY: words" for each. What was found
+/// is the heaviest; unstable in part where one study finds it unstable and another one stable somewhere.
+[[nodiscard]] VariantVerdict verdict_of(std::span<const io::StudySummary> studies);
+
+}  // namespace whirl::study

@@ -1,0 +1,125 @@
+#include "whirl/study/sweep/verdict_words.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "study/bars/unresolved.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr std::size_t most = 4;  // stretches, or speeds, that are named
+
+Found found_in(std::string_view words) {
+  const auto has = [&](std::string_view word) { return words.find(word) != std::string_view::npos; };
+  if (words == "unstable" || words.starts_with("unstable throughout") || words.starts_with("unstable at the "))
+    return Found::unstable;
+  if (has("unstable") || has("loses stability")) return Found::in_part;
+  if (has("undetermined")) return Found::undetermined;
+  return has("undamped") ? Found::undamped : has("stable") ? Found::stable : Found::nothing;
+}
+
+std::string of_ranges(const std::vector<io::StabilityRange>& ranges) {
+  const auto& first = ranges.front();
+  if (std::ranges::all_of(ranges, [&](const auto& r) { return r.stability == first.stability; }))
+    return first.stability + " throughout";
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, ranges.size()); ++k) {
+    const auto& r = ranges[k];
+    const bool joined = k > 0 && ranges[k - 1].to == r.from;
+    text += fmt::format("{}{} {}{:.6g}", k == 0 ? "" : ", ", r.stability,
+                        joined ? "to " : fmt::format("{:.6g} to ", r.from), r.to);
+  }
+  if (first.unit != "1") text += " " + first.unit;
+  return ranges.size() > most ? text + fmt::format(", and {} more stretches", ranges.size() - most) : text;
+}
+
+// At a single speed, or at some.
+VariantVerdict of_modes(const std::vector<io::ModeEntry>& modes) {
+  std::vector<double> all, unstable;
+  bool open = false, undamped = false;
+  const auto note = [](std::vector<double>& speeds, double speed) {
+    if (speeds.empty() || speeds.back() != speed) speeds.push_back(speed);
+  };
+  for (const io::ModeEntry& m : modes) {
+    if (!m.more.contains("mode")) continue;  // of the shaft alone, without its bearings
+    note(all, m.speed);
+    if (m.stability == "unstable" || m.stability == "diverges") note(unstable, m.speed);
+    // Vibrations of the elements, which the modes of another mesh do not have, decide nothing.
+    const auto bar = m.more.find("real_uncertainty");
+    const bool of_elements =
+        (bar == m.more.end() || !std::isfinite(bar->second)) && is_of_elements({m.real, m.imag}, 0);
+    open = open || (m.stability == "undetermined" && !of_elements);
+    undamped = undamped || m.stability == "undamped";
+  }
+  if (all.empty()) return {};
+  if (unstable.empty()) {
+    const Found found = open ? Found::undetermined : undamped ? Found::undamped : Found::stable;
+    return {found, name_of(found)};
+  }
+  if (unstable.size() == all.size()) return {Found::unstable, "unstable"};
+  std::string text = "unstable at";
+  for (std::size_t k = 0; k < std::min(most, unstable.size()); ++k)
+    text += fmt::format("{} {:.6g}", k == 0 ? "" : ",", unstable[k]);
+  text += " " + modes.front().speed_unit;
+  if (unstable.size() > most) text += fmt::format(" and {} more speeds", unstable.size() - most);
+  return {Found::in_part, text};
+}
+
+}  // namespace
+
+const char* name_of(Found found) {
+  switch (found) {
+    case Found::stable:
+      return "stable";
+    case Found::undamped:
+      return "undamped";
+    case Found::undetermined:
+      return "undetermined";
+    case Found::no_result:
+      return "no result";
+    case Found::in_part:
+      return "unstable in part";
+    case Found::unstable:
+      return "UNSTABLE";
+    case Found::nothing:
+      break;
+  }
+  return "-";
+}
+
+VariantVerdict verdict_of(const io::StudySummary& study) {
+  // What ended early is not stable throughout, and its verdict knows that.
+  const bool by_ranges = study.ranges.size() > 1 || (study.stability.empty() && !study.ranges.empty());
+  const std::string words = by_ranges ? of_ranges(study.ranges) : study.stability;
+  if (!words.empty()) return {found_in(words), words};
+  VariantVerdict out = of_modes(study.modes);
+  if (out.words.empty() && study.status != "completed" && study.values.empty())
+    out = {Found::no_result, "no result: " + study.status};
+  return out;
+}
+
+VariantVerdict verdict_of(std::span<const io::StudySummary> studies) {
+  VariantVerdict out;
+  std::string each;
+  bool alike = true, stable = false;
+  for (const io::StudySummary& s : studies) {
+    const VariantVerdict one = verdict_of(s);
+    if (one.words.empty()) continue;
+    alike = alike && (out.words.empty() || one.words == out.words);
+    stable = stable || one.found == Found::stable;
+    each += fmt::format("{}{}: {}", each.empty() ? "" : "; ", s.name, one.words);
+    out.found = std::max(out.found, one.found);
+    if (out.words.empty()) out.words = one.words;
+  }
+  if (!alike) out.words = each;
+  if (out.found == Found::unstable && stable) out.found = Found::in_part;
+  return out;
+}
+
+}  // namespace whirl::study
