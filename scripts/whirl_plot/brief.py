@@ -75,8 +75,12 @@ def unbalance_response(study):
     said = [] if stability.startswith("stable") else [stability]
     known = [p for p in study.peaks if number(p, "semi_major") is not None and number(p, "speed") is not None and str(p.get("place")).startswith("node ")]
     found = [p for p in known if is_answer(p)]
+    endless = [p for p in study.peaks if p.get("stability") == "undamped" and number(p, "speed") is not None]
+    if endless:
+        p = endless[0]
+        said.append(f"undamped peak at {p['place']}, {digits(number(p, 'speed'), 4)} {p['speed'].get('unit', '')}: the amplitude grows without limit there")
     if not known:
-        return [*said, "no peak in the range"]
+        return said if endless else [*said, "no peak in the range"]
     if not found:
         return [*said, f"{len(known)} peaks, none of which is a motion of the machine"]
     p = max(found, key=lambda p: number(p, "semi_major"))

@@ -98,7 +98,7 @@ namespace {
 std::string mark_of(const io::PeakEntry& p) {
   std::vector<std::string> marks;
   if (!p.stability.empty() && p.stability != "stable")
-    marks.emplace_back(p.stability == "unstable" ? "UNSTABLE" : "stability?");
+    marks.emplace_back(p.stability == "unstable" ? "UNSTABLE" : p.stability == "undamped" ? "undamped" : "stability?");
   if (const std::string margin = mark_of(p.verdict); margin != "-") marks.push_back(margin);
   return marks.empty() ? "-" : fmt::format("{}", fmt::join(marks, "; "));
 }
@@ -153,7 +153,8 @@ std::string of_transfers(const io::StudySummary& s, const Values& v) {
              fmt::format("at [{}]", s.values.empty() ? "" : v.unit(s.values[1].first))});
   for (const auto& [name, q] : s.values)
     if (name.ends_with(".largest"))
-      grid.add({name.substr(0, name.size() - 8), v.cell(name), q.unit, v.cell(name + "_at")});
+      grid.add({name.substr(0, name.size() - 8), std::isfinite(q.value) ? v.cell(name) : "without limit", q.unit,
+                v.cell(name + "_at")});
   return out + grid.text();
 }
 

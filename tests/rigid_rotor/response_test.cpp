@@ -87,14 +87,55 @@ TEST(LinearResponse, PeaksSayWhatTheyDoNotKnow) {
   };
   const auto undamped = response("0", "");
   ASSERT_EQ(undamped.warnings.size(), 1U);
-  EXPECT_NE(undamped.warnings[0].find("has no height"), std::string::npos) << undamped.warnings[0];
+  EXPECT_NE(undamped.warnings[0].find("is undamped"), std::string::npos) << undamped.warnings[0];
   EXPECT_NEAR(test::values_of(undamped).at("node.3.peak.1.speed"), 829.87, 0.02);
   EXPECT_TRUE(std::isnan(test::values_of(undamped).at("node.3.peak.1.semi_major")));
+  EXPECT_TRUE(std::isnan(test::values_of(undamped).at("node.3.peak.1.amplification_factor")));
+  EXPECT_TRUE(undamped.stability.starts_with("stable or undamped")) << undamped.stability;
+  // It moves with the mesh, and is a peak on every one.
+  const io::PeakEntry& peak = undamped.peaks.front();
+  EXPECT_GT(peak.speed.bar(), 0);
+  EXPECT_LT(peak.speed.bar(), 1);
+  EXPECT_EQ(peak.stability, "undamped");
+  ASSERT_EQ(peak.notes.size(), 1U);
+  EXPECT_TRUE(peak.notes[0].starts_with("undamped: ")) << peak.notes[0];
   const auto coarse = response("2000", ", points: 9, refine: false");
   for (const auto& [name, value] : coarse.values)
     if (name == "node.3.peak.1.speed") {
       EXPECT_TRUE(std::isnan(value.more.at("uncertainty")));
     }
+}
+
+// A transfer function has no largest value where it grows without limit, however near to that a frequency lies.
+TEST(LinearResponse, TransferFunctionsOfAnUndampedMachineHaveNoLargestValue) {
+  const auto transfer = [](const std::string& damping, const std::string& range) {
+    study::Deck deck = study::load(
+        MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/tests/app/friswell_591.yaml",
+        {"bearings.*.film.damping=[" + damping + " N s/m, 0 N s/m, 0 N s/m, " + damping + " N s/m]",
+         "studies=[{frequency_response: {speed: 0 rpm, inputs: [{node: 3}], points: 20, range: {" + range + "}}}]"});
+    return test::run_deck(deck, "linear_endless").at(0);
+  };
+  const auto largest = [](const io::StudySummary& s) {
+    return test::values_of(s).at("node.3.x.from.node.3.x.largest");
+  };
+  double place = 0;
+  for (const char* range : {"from: 20 rad/s, to: 150 rad/s", "from: 86 rad/s, to: 87.5 rad/s"}) {
+    const auto s = transfer("0", range);
+    EXPECT_TRUE(std::isnan(largest(s))) << range;
+    ASSERT_FALSE(s.warnings.empty());
+    EXPECT_TRUE(s.warnings[0].starts_with("undamped resonances: ")) << s.warnings[0];
+    for (const auto& [name, q] : s.values)
+      if (name.ends_with(".largest_at")) {
+        EXPECT_GT(q.bar(), 0);
+        EXPECT_LT(q.bar(), 0.1);
+        if (place > 0) {
+          EXPECT_NEAR(q.value, place, 1e-9 * place);
+        }
+        place = q.value;
+      }
+  }
+  EXPECT_TRUE(std::isfinite(largest(transfer("0", "from: 20 rad/s, to: 60 rad/s"))));
+  EXPECT_TRUE(std::isfinite(largest(transfer("200", "from: 20 rad/s, to: 150 rad/s"))));
 }
 
 }  // namespace

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 
 #include "study/bars/film_mesh.hpp"
@@ -18,6 +20,7 @@
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
+#include "study/linear/endless.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/passed_over.hpp"
 #include "study/linear/resonances.hpp"
@@ -111,7 +114,7 @@ public:
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
   // What grows about the equilibrium, packed, behind its length; then all eigenvalues. Nothing if these could not be
-  // computed.
+  // computed. growth_in() and eigenvalues_in() take it apart.
   std::vector<double> eigenvalues() {
     return answer_of([&] {
       const solve::Stability found = equilibrium_stability(system_, walker_.at(options_.speed.value));
@@ -172,6 +175,19 @@ private:
   Way::Films last_films_ = Way::Films::whole;
 };
 
+std::vector<double> growth_in(const std::vector<double>& eigen) {
+  if (eigen.empty()) return {};
+  return {eigen.begin() + 1, eigen.begin() + 1 + static_cast<std::ptrdiff_t>(eigen.front())};
+}
+
+std::vector<Complex> eigenvalues_in(const std::vector<double>& eigen) {
+  std::vector<Complex> out;
+  if (eigen.empty()) return out;
+  for (std::size_t k = 1 + static_cast<std::size_t>(eigen.front()); k + 1 < eigen.size(); k += 2)
+    out.emplace_back(eigen[k], eigen[k + 1]);
+  return out;
+}
+
 // Largest difference over the frequencies, relative to the matrix of the whole machine there, and where it is.
 struct Difference {
   double relative = 0, frequency = 0;
@@ -206,16 +222,18 @@ struct TransferBars {
   std::vector<std::size_t> at;             // of the frequencies, ascending
   std::vector<std::vector<double>> error;  // [response][of these]
   std::vector<std::vector<double>> shaft;  // likewise: what the mesh of the shaft has in them
+  std::vector<double> undamped;            // of the frequency of each undamped resonance [rad/s]
   [[nodiscard]] double of(std::size_t response, std::size_t frequency) const {
     return error[response][static_cast<std::size_t>(std::find(at.begin(), at.end(), frequency) - at.begin())];
   }
 };
 
 // The machine with its films as they are at a few frequencies, and where each response is largest, on other meshes of
-// the films and of the shaft. One task is one mesh.
+// the films and of the shaft. One task is one mesh. Where a response grows without limit it has no largest value.
 TransferBars bars_of(const Context& context, const Layout& layout, Pieces& pieces,
                      const FrequencyResponseOptions& options, const std::vector<TransferOutput>& outputs,
-                     const std::vector<double>& frequencies, const Matrices& found) {
+                     const std::vector<double>& frequencies, const Matrices& found,
+                     const std::vector<Endless>& endless) {
   TransferBars out;
   std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   if (shaft_mesh_matters(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
@@ -223,13 +241,18 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   const std::size_t responses = found.front().size();
   const std::vector<std::size_t> few = few_of(frequencies.size());
   std::set<std::size_t> at(few.begin(), few.end());
-  for (std::size_t e = 0; e < responses; ++e) at.insert(largest_of(found, e));
+  for (std::size_t e = 0; e < responses; ++e)
+    if (std::ranges::none_of(endless, [&](const Endless& u) { return u.responses[e]; }))
+      at.insert(largest_of(found, e));
   out.at.assign(at.begin(), at.end());
   const auto compute = [&](std::size_t i) {
     std::vector<double> all;
     const bool answered = has_answer([&] {
       Transfers there(context, layout, options, outputs, meshes[i]);
       for (const std::size_t k : out.at) append(all, there.at({"machine"}, frequencies[k]).values);
+      if (endless.empty()) return;
+      const std::vector<Complex> eigenvalues = eigenvalues_in(there.eigenvalues());
+      for (const Endless& u : endless) all.push_back(nearest_to(u.frequency, eigenvalues));
     });
     if (!answered) all.clear();
     return all;
@@ -239,6 +262,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "other mesh", none);
   std::vector<double> here;
   for (const std::size_t k : out.at) append(here, found[k]);
+  for (const Endless& u : endless) here.push_back(u.frequency);
   Bars bars(here, law_of(context.machine, context.layout));
   for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
   out.error.resize(responses);
@@ -250,6 +274,8 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
       out.error[e].push_back(std::hypot(a.total(), b.total()));
       out.shaft[e].push_back(std::hypot(a.shaft_mesh, b.shaft_mesh));
     }
+  for (std::size_t k = 0; k < endless.size(); ++k)
+    out.undamped.push_back(bars[2 * out.at.size() * responses + k].total());
   return out;
 }
 
@@ -300,25 +326,30 @@ StudyResult FrequencyResponse::run(Context& context) {
       distribute(
           layout, 1, [&](std::size_t) { return machine.eigenvalues(); }, pieces, "stability", machine.trail())
           .front();
-  const auto behind = eigen.begin() + (eigen.empty() ? 0 : 1 + static_cast<std::ptrdiff_t>(eigen.front()));
   // Equilibria know of no loss factor: of such shafts nothing is said.
   if (context.machine.rotor.loss_factor == 0) {
-    put_growth(eigen.empty() ? eigen : std::vector<double>(eigen.begin() + 1, behind),
+    put_growth(growth_in(eigen),
                fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
                "No vibration settles into these transfer functions", summary);
   }
-  std::vector<Complex> eigenvalues;
-  for (auto at = behind; at != eigen.end(); at += 2) eigenvalues.emplace_back(at[0], at[1]);
-  const std::vector<Resonance> narrow =
-      narrow_resonances(eigenvalues, frequencies, search_of(context.machine.rotor, 0));
+  const std::vector<Complex> eigenvalues = eigenvalues_in(eigen);
+  const ResonanceSearch search = search_of(context.machine.rotor, 0);
+  std::vector<Resonance> narrow = narrow_resonances(eigenvalues, frequencies, search);
+  std::erase_if(narrow, [](const Resonance& r) { return r.undamped; });
+  const std::vector<Resonance> undamped =
+      undamped_resonances(eigenvalues, frequencies.front(), frequencies.back(), search);
   // Nobody asked for these frequencies: where one has no answer the study goes on.
-  const auto there = [&](std::size_t i) {
-    return answer_of([&] { return pack(machine.at({"machine"}, around(narrow[i])[1])); });
-  };
-  std::vector<Transfer> at_narrow;
-  for (const auto& flat : distribute(layout, narrow.size(), there, pieces, "resonance", machine.trail()))
-    at_narrow.push_back(unpack_transfer(flat));
-  const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0]);
+  std::vector<double> beside;
+  for (const Resonance& r : narrow) beside.push_back(around(r)[1]);
+  for (const Resonance& r : undamped)
+    for (const double frequency : beside_pole(r)) beside.push_back(frequency);
+  const auto there = [&](std::size_t i) { return answer_of([&] { return pack(machine.at({"machine"}, beside[i])); }); };
+  std::vector<Transfer> at_beside;
+  for (const auto& flat : distribute(layout, beside.size(), there, pieces, "resonance", machine.trail()))
+    at_beside.push_back(unpack_transfer(flat));
+  const std::vector<Endless> endless = endless_of(undamped, std::span(at_beside).subspan(narrow.size()));
+  at_beside.resize(narrow.size());
+  const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0], endless);
 
   auto& group = results.group();
   group.set("speed", options.speed.value);
@@ -356,10 +387,19 @@ StudyResult FrequencyResponse::run(Context& context) {
         table.put("phase", column[3], "rad", "of the output ahead of the input");
         if (w > 0) continue;
         const std::size_t e = o * inputs + i, most = largest_of(all[0], e);
+        const auto grows =
+            std::ranges::find_if(endless, [&](const Endless& u) { return static_cast<bool>(u.responses[e]); });
         std::map<std::string, double> bar;
-        if (!bars.at.empty()) bar["uncertainty"] = bars.of(e, most);
-        summary.set(name + ".largest", column[2][most], of, bar);
-        summary.set(name + ".largest_at", deck::from_si(frequencies[most], unit), unit);
+        if (grows != endless.end()) {
+          const auto place = static_cast<std::size_t>(grows - endless.begin());
+          if (!bars.undamped.empty()) bar["uncertainty"] = deck::from_si(bars.undamped[place], unit);
+          summary.set(name + ".largest", std::numeric_limits<double>::infinity(), of);
+          summary.set(name + ".largest_at", deck::from_si(grows->frequency, unit), unit, bar);
+        } else {
+          if (!bars.at.empty()) bar["uncertainty"] = bars.of(e, most);
+          summary.set(name + ".largest", column[2][most], of, bar);
+          summary.set(name + ".largest_at", deck::from_si(frequencies[most], unit), unit);
+        }
         if (!answers(most, e)) silent.push_back(name);
         if (bars.at.empty()) continue;
         std::optional<double> worst;
@@ -379,7 +419,8 @@ StudyResult FrequencyResponse::run(Context& context) {
     summary.set(ways[w].name + ".difference", apart.relative, "1");
     summary.set(ways[w].name + ".difference_at", deck::from_si(apart.frequency, unit), unit);
   }
-  warn_of_passed_over(summary, narrow, at_narrow, frequencies, all[0], names, unit);
+  warn_of_endless(summary, endless, bars.undamped, names, unit);
+  warn_of_passed_over(summary, narrow, at_beside, frequencies, all[0], names, unit);
   if (!silent.empty())
     summary.warnings.push_back(
         fmt::format("no answer but rounding, below 1e-12 of the largest motion of the machine: {}. They are zero, and "

@@ -33,6 +33,11 @@ io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::st
   out.speed = {deck::from_si(peak.speed, unit), unit};
   out.semi_major = {peak.height, "m"};
   out.amplification_factor = {peak.amplification, "1"};
+  if (peak.undamped())
+    out.notes.push_back(
+        fmt::format("{}: it is narrower than {:g} of its speed. The amplitude grows without limit as the "
+                    "speed comes nearer, so that it has no height and no amplification factor",
+                    undamped, peak_tolerance));
   if (!peak.no_factor.empty()) out.notes.push_back("no amplification factor: " + peak.no_factor);
   if (!operating) return out;
   const Separation margin = separation(peak.speed, peak.amplification, operating->from, operating->to);
@@ -56,7 +61,8 @@ void warn_of_amplification(io::StudySummary& summary) {
   std::vector<High> high;  // one of each resonance, which shows at many places
   constexpr double near = 0.01;
   const auto see = [&](const io::Quantity& factor, const io::Quantity& speed, const std::string& where) {
-    if (!(factor.value - factor.bar() > high_amplification)) return;
+    // An undamped peak says so itself.
+    if (!std::isfinite(factor.value) || !(factor.value - factor.bar() > high_amplification)) return;
     const High here{factor.value, speed.value,
                     fmt::format("{:.3g} at {:.5g} {}{}", factor.value, speed.value, speed.unit, where)};
     const auto known = std::ranges::find_if(

@@ -15,6 +15,9 @@ namespace whirl::study {
 /// Amplification factor from which on a machine is not driven through a resonance without more damping.
 inline constexpr double high_amplification = 30;
 
+/// Stability of the equilibrium at an undamped peak of a machine of which nothing grows, and how its note begins.
+inline constexpr const char* undamped = "undamped";
+
 /// Where margins are counted from: the operating range of a study, else its operating speed, else the service speed of
 /// the machine. Empty if there is none of these.
 [[nodiscard]] std::optional<deck::Range> operating_range(const std::optional<deck::Range>& range,
@@ -28,7 +31,8 @@ struct PeakValue {
 };
 [[nodiscard]] const std::vector<PeakValue>& peak_values();
 
-/// The entry of a peak [rad/s, m] with speeds in `unit`; without bars.
+/// The entry of a peak [rad/s, m] with speeds in `unit`; without bars. Height and amplification factor of an undamped
+/// one are infinite, which a note says, and its required margin is that of an infinite factor.
 [[nodiscard]] io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::string& unit,
                                      const std::optional<deck::Range>& operating);
 

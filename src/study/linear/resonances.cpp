@@ -22,6 +22,10 @@ double width_of(Complex lambda, double speed, double least) {
   return std::max(std::abs(lambda.real()), least * speed);
 }
 
+bool is_undamped(Complex lambda, const ResonanceSearch& search) {
+  return search.lossless && std::abs(lambda.real()) < no_damping * std::abs(lambda);
+}
+
 // A real eigenvalue does not vibrate, whether it falls away or grows.
 bool has_peak(Complex lambda) {
   return std::abs(lambda.real()) < no_peak * std::abs(lambda);
@@ -98,6 +102,7 @@ bool is_one_of(const std::vector<Resonance>& all, const Resonance& r) {
 
 ResonanceSearch search_of(const rotor::Options& rotor, std::size_t most) {
   ResonanceSearch out{resolved_to(rotor), most};
+  out.lossless = rotor.loss_factor == 0;
   out.least_width = std::max(out.least_width, 0.1 * rotor.loss_factor / 2);
   return out;
 }
@@ -114,9 +119,23 @@ std::vector<Resonance> narrow_resonances(const std::vector<Complex>& eigenvalues
   for (const Complex v : eigenvalues) {
     const double at = std::abs(v), width = width_of(v, at, search.least_width);
     if (v.imag() > 0 && has_peak(v) && at < search.limit && !shows(computed, at, width) && !is_one_of(out, {at, width}))
-      out.push_back({at, width});
+      out.push_back({at, width, is_undamped(v, search)});
   }
   std::ranges::sort(out, {}, &Resonance::speed);
+  return out;
+}
+
+std::vector<Resonance> undamped_resonances(const std::vector<Complex>& eigenvalues, double from, double to,
+                                           const ResonanceSearch& search) {
+  std::vector<Resonance> out;
+  for (const Complex v : eigenvalues) {
+    const double at = std::abs(v);
+    const bool inside = from <= at && at <= to && at < search.limit;
+    if (inside && v.imag() > 0 && is_undamped(v, search)) out.push_back({at, search.least_width * at, true});
+  }
+  std::ranges::sort(out, {}, &Resonance::speed);
+  const auto same = [](const Resonance& a, const Resonance& b) { return b.speed - a.speed < least_step * b.speed; };
+  out.erase(std::unique(out.begin(), out.end(), same), out.end());
   return out;
 }
 
@@ -166,7 +185,7 @@ HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& co
     if (!x.meets()) continue;
     const double speed = std::clamp(x.secant(), x.a, x.b);
     if (speed >= search.limit || is_one_of(out.found, {speed, x.width()})) continue;
-    out.found.push_back({speed, x.width()});
+    out.found.push_back({speed, x.width(), is_undamped(lambda, search)});
   }
   std::ranges::sort(out.found, {}, &Resonance::speed);
   return out;

@@ -18,6 +18,7 @@ using Spectra = std::map<double, std::vector<std::complex<double>>>;
 /// falls to 0.707 of its height at a distance of its width abs(Re lambda).
 struct Resonance {
   double speed = 0, width = 0;  ///< [rad/s]
+  bool undamped = false;        ///< no narrower one has a height that could be told
 };
 
 /// What is looked for, and how far.
@@ -25,13 +26,22 @@ struct ResonanceSearch {
   double limit = 0;           ///< [rad/s]
   std::size_t most = 0;       ///< spectra that `more` is asked for
   double least_width = 3e-5;  ///< of the speed, of what has no damping: nearer speeds say nothing new
+  bool lossless = true;       ///< eigenvalues know of all damping
 };
 /// Up to resolved_to(). A loss factor, which eigenvalues know nothing of, makes resonances wider: a tenth of what it
 /// does to the shaft alone is the least.
 [[nodiscard]] ResonanceSearch search_of(const rotor::Options& rotor, std::size_t most);
 
+/// Damping ratio below which a resonance is as good as undamped: rounding of eigenvalues is no more than that.
+inline constexpr double no_damping = 1e-8;
+
 /// Damping ratio from which on a resonance has no peak: abs(1 - r^2 + 2 i zeta r) has no minimum over r any more.
 inline constexpr double no_peak = 0.7071;
+
+/// Undamped resonances among eigenvalues [1/s] (both of each pair) between two frequencies and below the limit, by
+/// rising frequency; equal ones once. Where there is a loss factor, none is known.
+[[nodiscard]] std::vector<Resonance> undamped_resonances(const std::vector<std::complex<double>>& eigenvalues,
+                                                         double from, double to, const ResonanceSearch& search);
 
 /// Whether the rising speeds (or frequencies) stand so near each other about `at` that a resonance of this width shows.
 [[nodiscard]] bool shows(const std::vector<double>& computed, double at, double width);

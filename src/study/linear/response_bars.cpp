@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "study/bars/summary_bars.hpp"
@@ -14,7 +15,7 @@ namespace {
 constexpr double apart = 5e-3, together = 4e-3;  // of the speed
 
 // Of a single resonance g = 1/f^2 is a parabola over the speed, with g''/g = 2 (2 Q/s)^2 at its foot, however far apart
-// the three speeds stand on its flanks.
+// the three speeds stand on its flanks. No quality: no top, the curve bends upwards there.
 struct Top {
   double speed, height, quality;
 };
@@ -24,7 +25,12 @@ Top top_of(double centre, const std::array<double, 3>& f) {
   for (std::size_t i = 0; i < 3; ++i) g[i] = 1 / (f[i] * f[i]);
   const double h = apart * centre, slope = (g[2] - g[0]) / (2 * h), curvature = (g[0] - 2 * g[1] + g[2]) / (h * h),
                foot = g[1] - slope * slope / (2 * curvature);
-  return {centre - slope / curvature, 1 / std::sqrt(foot), centre / 2 * std::sqrt(std::max(0.0, curvature / foot / 2))};
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const double place = centre - slope / curvature;
+  if (!(curvature > 0)) return {place, infinite, 0};
+  // Of a resonance that is far narrower than the three speeds stand apart nothing is left at the foot.
+  if (!(foot > 0)) return {place, infinite, infinite};
+  return {place, 1 / std::sqrt(foot), centre / 2 * std::sqrt(curvature / foot / 2)};
 }
 
 class Tops {
@@ -62,7 +68,7 @@ double location_of(const std::vector<NamedPeak>& peaks, const std::string& name,
   if (name.ends_with("separation_margin")) return value == 0 ? 0 : p->errors.speed * (1 + value);
   if (name.ends_with("required_margin")) {
     const double af = p->amplification;
-    return af < 2.5 ? 0 : 0.17 * p->errors.factor * af / ((af - 1.5) * (af - 1.5));
+    return af < 2.5 || std::isinf(af) ? 0 : 0.17 * p->errors.factor * af / ((af - 1.5) * (af - 1.5));
   }
   return std::abs(value) * (name.ends_with("speed")                  ? p->errors.speed
                             : name.ends_with("amplification_factor") ? p->errors.factor
@@ -105,8 +111,10 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
           p.vanishes = true;
           continue;
         }
-        put(there, p.head, p.speed + b.speed - a.speed, p.height + b.height - a.height,
-            p.amplification * b.quality / a.quality);
+        // An undamped peak is one on every mesh.
+        const bool undamped = std::isinf(p.height);
+        put(there, p.head, p.speed + b.speed - a.speed, undamped ? p.height : p.height + b.height - a.height,
+            undamped ? p.amplification : p.amplification * b.quality / a.quality);
         double lowest = 0;
         for (std::size_t k = first; k < saddle; ++k) lowest = std::max(lowest, moved.height[k][p.place]);
         if (saddle > first) there.set(p.head + prominence, p.height + b.height - a.height - lowest, "m");

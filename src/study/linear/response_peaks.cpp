@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace whirl::study {
@@ -150,8 +151,7 @@ Peak peak_at(const ResponseCurve& curve, std::size_t top) {
   p.errors.speed = off <= peak_tolerance ? peak_tolerance : PeakErrors::unknown;
   const double share = 2 * p.amplification * peak_tolerance;
   if (share > narrow) {
-    p.height = p.amplification = PeakErrors::unknown;
-    p.no_factor = "it is narrower than the tolerance of its speed, as an undamped resonance is";
+    p.height = p.amplification = std::numeric_limits<double>::infinity();
     return p;
   }
   p.errors.height = p.errors.speed + (std::isfinite(share) ? share * share / 2 : 0);

@@ -34,13 +34,15 @@ struct ResponseCurve {
   [[nodiscard]] std::vector<std::size_t> tops() const;
 };
 
-/// A peak at one of the samples. Where a resonance is narrower than the tolerance of its speed, as an undamped one is,
-/// it has no height and no factor: not a number. It has no factor either where the curve does not fall to 0.707 of its
-/// height on both sides before the range ends or a higher peak rises.
+/// A peak at one of the samples. Where a resonance is narrower than the tolerance of its speed it is undamped as far as
+/// can be told: height and factor are infinite. It has no factor, not a number, where the curve does not fall to 0.707
+/// of its height on both sides before the range ends or a higher peak rises.
 struct Peak {
   double speed = 0, height = 0, amplification = 0;  ///< rad/s; m; N/(N2 - N1) at 0.707 of the height (API 684)
   PeakErrors errors;
   std::string no_factor = {};  ///< why it has no amplification factor
+
+  [[nodiscard]] bool undamped() const { return height == std::numeric_limits<double>::infinity(); }
 };
 [[nodiscard]] Peak peak_at(const ResponseCurve& curve, std::size_t top);
 /// The lowest samples on either side of a top before the curve rises above it or ends, if it stands above the higher

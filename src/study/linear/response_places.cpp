@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "whirl/deck/units.hpp"
 
@@ -28,10 +27,7 @@ std::vector<Place> places_of(const std::vector<int>& nodes, const std::vector<st
 
 std::vector<std::size_t> tops_of(const ResponseCurve& curve) {
   std::vector<std::size_t> tops = curve.tops();
-  std::ranges::stable_sort(tops, std::greater{}, [&](std::size_t k) {
-    const double height = peak_at(curve, k).height;
-    return std::isfinite(height) ? height : std::numeric_limits<double>::infinity();
-  });
+  std::ranges::stable_sort(tops, std::greater{}, [&](std::size_t k) { return peak_at(curve, k).height; });
   return tops;
 }
 
@@ -75,8 +71,10 @@ std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector
           height = of.height[k], where = place.label;
     }
     if (height > 0)
-      words.push_back(
-          fmt::format("{:.6g} {} ({:.4g} um at least, {})", deck::from_si(r.speed, unit), unit, 1e6 * height, where));
+      words.push_back(fmt::format(
+          "{:.6g} {} ({}, {})", deck::from_si(r.speed, unit), unit,
+          r.undamped ? std::string("undamped: it has no height") : fmt::format("{:.4g} um at least", 1e6 * height),
+          where));
   }
   return words;
 }

@@ -30,7 +30,7 @@ void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, c
                                     const std::string& unit);
 
 /// In words the resonances of `hidden` at which the response has a peak at one of `more` speeds, with the height that
-/// it has there.
+/// it has there if it is damped.
 [[nodiscard]] std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector<Response>& more,
                                                 const std::vector<Resonance>& hidden, const std::vector<Place>& places,
                                                 const std::string& unit);
