@@ -74,15 +74,20 @@ def modes(study):
     out, unit = [], study.attribute("speed_unit", "rad/s")
     to_speed, _, to_frequency, frequency_unit = speed_axis(unit)
     if study.has("critical/speed"):
-        operating, verdicts = operating_in(study), study.get("critical/verdict")
-        rows, damped = [], []
+        operating, verdicts, whirls = operating_in(study), study.get("critical/verdict"), study.get("critical/whirl")
+        rows, damped, states = [], [], study.get("critical/stability")
         for k, (speed, mode) in enumerate(zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/mode")))):
             found = [study.values.get(f"critical.{k + 1}.{name}") for name in ("speed", "log_decrement", "amplification_factor", "separation_margin", "required_margin")]
             speed_at, delta, factor, *margin = [(None, None) if v is None else (v.value, v.uncertainty) for v in found]
             verdict = "" if verdicts is None else str(np.atleast_1d(verdicts)[k])
-            row = [digits(float(speed * to_speed), 5) if speed_at[0] is None else with_bar(*speed_at), int(mode), with_bar(*delta), with_bar(*factor)]
-            (damped if verdict.startswith("damped") else rows).append(row + (margin_cells(*margin, verdict) if operating else []))
-        head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
+            whirl = "\u2013" if whirls is None else str(np.atleast_1d(whirls)[k]) or "\u2013"
+            row = [k + 1, digits(float(speed * to_speed), 5) if speed_at[0] is None else with_bar(*speed_at), int(mode), whirl, with_bar(*delta), with_bar(*factor)]
+            row += margin_cells(*margin, verdict) if operating else []
+            if states is not None and any(str(s) != "stable" for s in states):
+                row.append("" if str(states[k]) == "stable" else str(states[k]))
+            (damped if verdict.startswith("damped") else rows).append(row)
+        head = ["critical", f"speed [{unit}]", "mode", "whirl", "log. decrement \u03b4", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
+        head += [""] * (max(map(len, rows + damped), default=0) - len(head))
         note = margin_note(operating, unit) if operating else ""
         out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
         if damped:
@@ -130,11 +135,14 @@ def unbalance_response(study):
     for place in dict.fromkeys(str(p.get("place")) for p in study.peaks):
         rows += [[place if n == 0 else "", *peak_row(p, operating)] for n, p in enumerate(peaks_at(study, place)[:4])]
     margins_head = MARGIN_HEAD if operating else []
-    head = ["probe", f"peak at [{unit}]", "amplitude [\u00b5m]", "amplification", *margins_head, "equilibrium", ""]
+    head = ["probe", f"peak at [{unit}]", "amplitude [\u00b5m]", "amplification N/(N2 \u2212 N1)", *margins_head, "equilibrium", ""]
     if rows and not any(r[-1] for r in rows):
         head, rows = head[:-1], [r[:-1] for r in rows]
     note = "0-peak, semi-major axis of the orbit; amplification N/(N2 \u2212 N1) at 0.707 of the peak (API 684); a response about an unstable equilibrium is no motion"
     shown = f"; {margin_note(operating, unit)}" if operating else ""
+    modes = next((s.name for s in study.results.studies if s.kind == "modes" and "critical.1.amplification_factor" in s.values), None)
+    if modes is not None:
+        shown = f"; the factor in {modes} is \u03c0/\u03b4 of the mode at fixed speed, and differs from this one where the frequency of the mode changes with the speed{shown}"
     out = [Table("Peaks of the response, the four largest of each probe", head, rows, note + shown)] if rows else []
     at = {k.removeprefix("operating."): v for k, v in study.values.items() if k.startswith("operating.")}
     if at:

@@ -146,7 +146,7 @@ std::string highlights(const io::StudySummary& s, std::span<const io::StudySumma
   if (s.kind == "static") return of_static(s, v);
   if (s.kind == "alignment") return of_alignment(s, v);
   if (s.kind == "modes") return of_modes(s, v);
-  if (s.kind == "unbalance_response") return of_response(s);
+  if (s.kind == "unbalance_response") return of_response(s, before);
   if (s.kind == "equilibrium_branch") return of_equilibria(s, v);
   if (s.kind == "cycle_branch") return of_cycles(s, v);
   if (s.kind == "run_up") return of_run_up(s, v);

@@ -18,7 +18,7 @@ namespace whirl::app {
 
 // By kinds of studies; `v` has the values of the study.
 [[nodiscard]] std::string of_modes(const io::StudySummary& s, const Values& v);
-[[nodiscard]] std::string of_response(const io::StudySummary& s);
+[[nodiscard]] std::string of_response(const io::StudySummary& s, std::span<const io::StudySummary> before);
 [[nodiscard]] std::string of_transfers(const io::StudySummary& s, const Values& v);
 [[nodiscard]] std::string of_equilibria(const io::StudySummary& s, const Values& v);
 [[nodiscard]] std::string of_cycles(const io::StudySummary& s, const Values& v);

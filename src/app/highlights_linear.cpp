@@ -58,31 +58,30 @@ std::string mark_of(const std::string& verdict) {
   return verdict.empty() || verdict == "far enough" ? "-" : verdict == "too near" ? "TOO NEAR" : verdict;
 }
 
+// Beside the number of a mode.
+std::string brief_whirl(const std::string& whirl) {
+  return whirl == "forward" ? "fwd" : whirl == "backward" ? "bwd" : whirl;
+}
+
 }  // namespace
 
 std::string of_modes(const io::StudySummary& s, const Values& v) {
-  const auto criticals = Values::between(s, "critical.", ".speed");
+  const std::vector<study::CriticalSpeed> criticals = study::critical_speeds_of(s);
   if (criticals.empty()) return last_modes(s, v);
-  const std::string unit = v.unit("critical." + criticals.front() + ".speed");
-  Grid grid({"critical", "[" + unit + "]", "mode", "log decrement", "AF", "margin %", "required %", "mark"});
+  Grid grid({"critical", "[" + criticals.front().speed.unit + "]", "mode", "log dec.", "AF pi/delta", "margin %",
+             "need %", "mark"});
   std::vector<std::vector<std::string>> damped;
-  for (const std::string& k : criticals) {
-    const std::string head = "critical." + k + ".";
-    const auto decrement = v.get(head + "log_decrement");
-    std::string verdict = mark_of(study::margin_verdict_of(s, head));
-    if (decrement && *decrement < 0) verdict = "UNSTABLE";
-    const bool apart = verdict.starts_with("damped");
-    // Unbalance does not excite it where bearings are alike in both directions.
-    if (study::whirl_of_critical(s, k) == "backward") verdict = verdict == "-" ? "backward" : verdict + ", backward";
-    std::vector<std::string> row{k,
-                                 v.cell(head + "speed"),
-                                 number(v.get(head + "mode")),
-                                 decrement && *decrement == 0 ? "undamped" : v.brief(head + "log_decrement"),
-                                 v.brief(head + "amplification_factor"),
-                                 apart ? "-" : v.brief(head + "separation_margin", 100),
-                                 apart ? "-" : v.brief(head + "required_margin", 100),
-                                 verdict};
-    if (const auto mode = v.get(head + "mode")) row[2] = fmt::format("{:.0f}", *mode);
+  for (const study::CriticalSpeed& c : criticals) {
+    const bool apart = c.verdict.starts_with("damped");
+    std::vector<std::string> row{
+        c.number,
+        cell_of(c.speed),
+        std::isfinite(c.mode.value) ? fmt::format("{:.0f} {}", c.mode.value, brief_whirl(c.whirl)) : "-",
+        c.stability == "undamped" ? c.stability : brief_cell(c.log_decrement),
+        brief_cell(c.amplification_factor),
+        apart ? "-" : brief_cell(c.separation_margin, 100),
+        apart ? "-" : brief_cell(c.required_margin, 100),
+        c.stability == "unstable" ? "UNSTABLE" : mark_of(c.verdict)};
     if (apart)
       damped.push_back(std::move(row));
     else
@@ -103,10 +102,13 @@ std::string mark_of(const io::PeakEntry& p) {
   return marks.empty() ? "-" : fmt::format("{}", fmt::join(marks, "; "));
 }
 
+// Head of the column of amplification factors of a response.
+constexpr const char* half_power = "AF = N/(N2 - N1)";
+
 // The peaks of one place by falling height, and below them what their notes say, each once.
 std::string peaks_at(const std::string& place, const std::vector<io::PeakEntry>& own) {
-  Grid grid(
-      {"peak at " + place, "[" + own.front().speed.unit + "]", "0-peak [um]", "AF", "margin %", "required %", "mark"});
+  Grid grid({"peak at " + place, "[" + own.front().speed.unit + "]", "0-peak [um]", half_power, "margin %",
+             "required %", "mark"});
   std::vector<std::pair<std::string, std::vector<std::size_t>>> notes;
   for (std::size_t k = 0; k < own.size(); ++k) {
     const io::PeakEntry& p = own[k];
@@ -130,7 +132,7 @@ std::string peaks_at(const std::string& place, const std::vector<io::PeakEntry>&
 }  // namespace
 
 // Peaks at nodes of the shaft. The report has the peaks of the journals, too.
-std::string of_response(const io::StudySummary& s) {
+std::string of_response(const io::StudySummary& s, std::span<const io::StudySummary> before) {
   std::string out;
   std::vector<std::string> places;
   for (const io::PeakEntry& p : s.peaks)
@@ -140,6 +142,17 @@ std::string of_response(const io::StudySummary& s) {
     std::ranges::copy_if(s.peaks, std::back_inserter(own), [&](const io::PeakEntry& p) { return p.place == place; });
     out += peaks_at(place, own);
   }
+  // Two studies of one run give two factors of one resonance.
+  const auto has_factor = [](const auto& x) { return std::isfinite(x.amplification_factor.value); };
+  const auto modes = std::ranges::find_if(
+      before, [&](const io::StudySummary& b) { return std::ranges::any_of(study::critical_speeds_of(b), has_factor); });
+  if (modes != before.end() && std::ranges::any_of(s.peaks, has_factor))
+    out +=
+        in_lines(fmt::format("AF: the width of this response over the speed, at 0.707 of the peak; '{}' has pi/delta "
+                             "of the mode at fixed speed. They differ where the frequency of the mode "
+                             "changes with the speed",
+                             modes->name),
+                 4);
   return out;
 }
 

@@ -203,14 +203,12 @@ private:
       break;
     }
     vote(verdict, s.name);
-    for (const auto& [name, q] : s.values)
-      if (const auto k = between(name, "critical.", ".speed"); k && std::isfinite(q.value)) {
-        const Quantity* delta = find(s, "critical." + *k + ".log_decrement");
-        if (delta && delta->value - delta->bar() > damped) continue;
-        const std::string more = delta ? fmt::format("log decrement {:.3g}", delta->value) : "";
-        const bool backward = whirl_of_critical(s, *k) == "backward";
-        take_critical(q, joined(more, backward ? "backward whirl" : ""), "critical speed", "", s.name);
-      }
+    for (const CriticalSpeed& c : critical_speeds_of(s)) {
+      const Quantity& delta = c.log_decrement;
+      if (!std::isfinite(c.speed.value) || delta.value - delta.bar() > damped) continue;
+      const std::string more = std::isfinite(delta.value) ? fmt::format("log decrement {:.3g}", delta.value) : "";
+      take_critical(c.speed, joined(more, c.whirl == "backward" ? "backward whirl" : ""), "critical speed", "", s.name);
+    }
   }
   // The nearest one on either side of the service speed.
   void take_critical(const Quantity& q, const std::string& more, const std::string& what, const std::string& place,

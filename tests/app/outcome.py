@@ -32,7 +32,7 @@ def run(deck, name, *words):
 def row(text, start, expected, digits=2e-3):
     """The line that begins with `start` (after spaces) holds these numbers in this order."""
     for line in text.split("\n"):
-        words = re.sub(r" \+- \S+", "", line).split()
+        words = re.sub(r" \+- \S+| (fwd|bwd)\b", "", line).split()
         if words[:1] != [start] or len(words) < 1 + len(expected):
             continue
         try:
@@ -94,6 +94,9 @@ if not any("rotor.segments.3: length over stiffness diameter" in line for line i
 m = s["m"]
 row(text, "1", [m[f"critical.1.{k}"] for k in ("speed", "mode", "log_decrement", "amplification_factor")]
     + [100 * m["critical.1.separation_margin"], 100 * m["critical.1.required_margin"]])
+columns = [line.split(",") for line in (work / "criticals" / "csv" / "m" / "critical.csv").read_text().splitlines()]
+if columns[0][2:4] != ["mode", "whirl"] or [c[3] for c in columns[1:5]] != ["backward", "forward"] * 2 or not all(w in text for w in ("1 bwd", "2 fwd")):
+    failures.append(f"critical speeds have their sense of whirl: {columns}\n{text}")
 if abs(m["critical.1.amplification_factor"] * m["critical.1.log_decrement"] - math.pi) > 1e-9:
     failures.append(f"amplification factor and log decrement: {m}")
 if "mode at 500 rpm" not in text or "    1 more stand in summary.json" not in text:

@@ -78,7 +78,7 @@ def modes(folder):
         high = speed[decrement < 0].min() / RPM
         low = max(s for s in np.unique(speed) / RPM if s < high - 1e-6)
         assert f"becomes unstable between {low:.5g} and {high:.5g} rpm" in words, words
-        assert len(table_of(results["modes"], "Critical speeds: damped frequency equal to the speed").head) == 4
+        assert len(table_of(results["modes"], "Critical speeds: damped frequency equal to the speed").head) == 6
 
     def undamped(root):
         root["studies/modes/spectrum/log_decrement"][...] = 0
@@ -93,10 +93,11 @@ def modes(folder):
 
     def verdicts(root):
         root["studies/modes/critical"].create_dataset("verdict", data=["too near", "far enough", "damped, not critical", "", "far enough"])
+        root["studies/modes/critical"].create_dataset("whirl", data=["backward", "forward", "mixed", "forward", "planar"])
     with results_with(folder, told, verdicts) as results:
         critical = table_of(results["modes"], "Critical speeds: damped frequency equal to the speed")
-        assert critical.rows[0][0] == "689.4 \u00b1 1.5" and critical.rows[0][-3:] == ["12", "16", "no"], critical.rows[0]
-        assert [r[1] for r in table_of(results["modes"], "Damped, not critical: amplification factor below 2.5 (API 684)").rows] == [3]
+        assert critical.rows[0][:4] == [1, "689.4 \u00b1 1.5", 1, "backward"] and critical.rows[0][-3:] == ["12", "16", "no"], critical.rows[0]
+        assert [r[2] for r in table_of(results["modes"], "Damped, not critical: amplification factor below 2.5 (API 684)").rows] == [3]
         assert "unstable from 5022.2 \u00b1 3.1 rpm" in brief.of(results["modes"])
 
 

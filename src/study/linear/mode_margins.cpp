@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "whirl/deck/units.hpp"
 #include "whirl/study/linear/separation.hpp"
 
 namespace whirl::study {
@@ -37,6 +38,48 @@ void put_margins(io::StudySummary& summary, const std::string& head, double spee
   const double required =
       std::max(doubt(&Separation::required, speed, most), doubt(&Separation::required, speed, least));
   summary.set(head + "required_margin", here.required, "1", bar(exact || !std::isfinite(most) ? none : required));
+}
+
+void put_criticals(io::Group& table, const io::StudySummary& summary) {
+  const std::vector<CriticalSpeed> all = critical_speeds_of(summary);
+  std::string order;
+  const auto named = [&](const std::string& name) {
+    order += (order.empty() ? "" : " ") + name;
+    return name;
+  };
+  const auto put = [&](const std::string& name, io::Quantity CriticalSpeed::*member, const std::string& unit,
+                       const std::string& text, bool with_bar = true) {
+    std::vector<double> values, bars;
+    for (const CriticalSpeed& c : all) {
+      const io::Quantity& q = c.*member;
+      const auto bar = q.more.find("uncertainty");
+      const double size = bar == q.more.end() ? io::no_value : bar->second;
+      values.push_back(unit == "rad/s" ? deck::number_to_si(q.value, q.unit) : q.value);
+      bars.push_back(unit == "rad/s" ? deck::number_to_si(size, q.unit) : size);
+    }
+    table.put(named(name), values, unit, text);
+    if (with_bar) table.put(named(name + "_uncertainty"), bars, unit, "of the column before");
+  };
+  const auto put_words = [&](const std::string& name, std::string CriticalSpeed::*member, const std::string& text) {
+    std::vector<std::string> words;
+    for (const CriticalSpeed& c : all) words.push_back(c.*member);
+    table.put(named(name), words, text);
+  };
+  put("speed", &CriticalSpeed::speed, "rad/s", "speed equal to the damped frequency");
+  std::vector<std::int64_t> modes;
+  for (const CriticalSpeed& c : all) modes.push_back(static_cast<std::int64_t>(c.mode.value));
+  table.put(named("mode"), modes, "mode followed by its shape");
+  put_words("whirl", &CriticalSpeed::whirl,
+            "of the mode at the nearest computed speed; unbalance does not excite backward whirl where bearings are "
+            "alike in both directions");
+  put("log_decrement", &CriticalSpeed::log_decrement, "1", "delta of the mode there, at fixed speed");
+  put("amplification_factor", &CriticalSpeed::amplification_factor, "1", "pi/delta = 1/(2 zeta), at fixed speed");
+  put("separation_margin", &CriticalSpeed::separation_margin, "1",
+      "distance from the operating speeds, of their border");
+  put("required_margin", &CriticalSpeed::required_margin, "1", "by API 617");
+  put_words("stability", &CriticalSpeed::stability, "of the mode there: stable, undamped, unstable");
+  put_words("verdict", &CriticalSpeed::verdict, "whether it keeps its distance from the operating speeds");
+  table.set("columns", order);
 }
 
 }  // namespace whirl::study

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "whirl/deck/units.hpp"
+#include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 
 namespace whirl::study {
@@ -16,5 +17,8 @@ namespace whirl::study {
 /// 617; API 684 (2005), 2.5 (separation.hpp).
 void put_margins(io::StudySummary& summary, const std::string& head, double speed, double speed_error, double decrement,
                  double decrement_error, const std::optional<deck::Range>& operating);
+
+/// The critical speeds of the summary as a table, with the columns that the screen shows, and their bars.
+void put_criticals(io::Group& table, const io::StudySummary& summary);
 
 }  // namespace whirl::study

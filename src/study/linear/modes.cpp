@@ -259,9 +259,6 @@ StudyResult Modes::run(Context& context) {
           deck::from_si(lost.from, unit), deck::from_si(lost.to, unit), unit, lost.count));
 
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
-  std::vector<double> critical_speed, critical_decrement;
-  std::vector<std::int64_t> critical_mode;
-  std::vector<std::string> verdicts;
   const auto operating = operating_range(options.operating, {}, context.machine.service_speed);
   for (std::size_t k = 0; k < criticals.size(); ++k) {
     summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit,
@@ -271,16 +268,9 @@ StudyResult Modes::run(Context& context) {
     summary.set(fmt::format("critical.{}.mode", k + 1), criticals[k].id, "1");
     put_margins(summary, fmt::format("critical.{}.", k + 1), criticals[k].speed, criticals[k].error,
                 criticals[k].decrement, criticals[k].decrement_error, operating);
-    verdicts.push_back(margin_verdict_of(summary, fmt::format("critical.{}.", k + 1)));
-    critical_speed.push_back(criticals[k].speed);
-    critical_decrement.push_back(criticals[k].decrement);
-    critical_mode.push_back(criticals[k].id);
   }
   warn_of_amplification(summary);
-  group.child("critical").put("speed", critical_speed, "rad/s", "speed equal to the damped frequency");
-  group.child("critical").put("log_decrement", critical_decrement, "1", "of the mode there");
-  group.child("critical").put("mode", critical_mode, "mode followed by its shape");
-  group.child("critical").put("verdict", verdicts, "whether it keeps its distance from the operating speeds");
+  put_criticals(group.child("critical"), summary);
   if (operating && options.range) put_operating_range(summary, *operating, unit);
 
   put_bearings(group, context.machine);

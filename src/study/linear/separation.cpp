@@ -1,8 +1,12 @@
 #include "whirl/study/linear/separation.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 namespace whirl::study {
 namespace {
@@ -35,32 +39,37 @@ std::string margin_verdict(const io::Quantity& amplification_factor, const io::Q
   return missing > 0 ? "too near" : "far enough";
 }
 
-std::string margin_verdict_of(const io::StudySummary& summary, const std::string& head) {
-  const auto value = [&](const std::string& name) {
-    const auto at = std::ranges::find(summary.values, head + name, [](const auto& v) { return v.first; });
-    return at == summary.values.end() ? io::Quantity{} : at->second;
-  };
-  const io::Quantity actual = value("separation_margin");
-  io::Quantity factor = value("amplification_factor");
-  // Without damping there is none.
-  if (factor.unit.empty() && !actual.unit.empty()) factor = {std::numeric_limits<double>::infinity(), "1"};
-  return margin_verdict(factor, actual, value("required_margin"));
-}
-
-std::string whirl_of_critical(const io::StudySummary& summary, const std::string& k) {
-  const auto value = [&](const std::string& name) {
-    const auto at =
-        std::ranges::find(summary.values, "critical." + k + "." + name, [](const auto& v) { return v.first; });
-    return at == summary.values.end() ? std::numeric_limits<double>::quiet_NaN() : at->second.value;
-  };
-  const double speed = value("speed"), id = value("mode");
-  const io::ModeEntry* nearest = nullptr;
-  for (const io::ModeEntry& m : summary.modes) {
-    const auto number = m.more.find("mode");
-    if (number == m.more.end() || number->second != id) continue;
-    if (!nearest || std::abs(m.speed - speed) < std::abs(nearest->speed - speed)) nearest = &m;
+std::vector<CriticalSpeed> critical_speeds_of(const io::StudySummary& summary) {
+  constexpr std::string_view head = "critical.", tail = ".speed";
+  std::vector<CriticalSpeed> out;
+  for (const auto& [name, speed] : summary.values) {
+    if (!name.starts_with(head) || !name.ends_with(tail)) continue;
+    CriticalSpeed c{name.substr(head.size(), name.size() - head.size() - tail.size()), speed};
+    for (const auto& [value, member] : {std::pair{"mode", &CriticalSpeed::mode},
+                                        {"log_decrement", &CriticalSpeed::log_decrement},
+                                        {"amplification_factor", &CriticalSpeed::amplification_factor},
+                                        {"separation_margin", &CriticalSpeed::separation_margin},
+                                        {"required_margin", &CriticalSpeed::required_margin}}) {
+      const std::string full = fmt::format("{}{}.{}", head, c.number, value);
+      const auto at = std::ranges::find(summary.values, full, [](const auto& v) { return v.first; });
+      if (at != summary.values.end()) c.*member = at->second;
+    }
+    const double decrement = c.log_decrement.value;
+    if (std::isfinite(decrement)) c.stability = decrement > 0 ? "stable" : decrement < 0 ? "unstable" : "undamped";
+    io::Quantity factor = c.amplification_factor;
+    if (factor.unit.empty() && !c.separation_margin.unit.empty())
+      factor = {std::numeric_limits<double>::infinity(), "1"};
+    c.verdict = margin_verdict(factor, c.separation_margin, c.required_margin);
+    const io::ModeEntry* nearest = nullptr;
+    for (const io::ModeEntry& m : summary.modes) {
+      const auto number = m.more.find("mode");
+      if (number == m.more.end() || number->second != c.mode.value) continue;
+      if (!nearest || std::abs(m.speed - speed.value) < std::abs(nearest->speed - speed.value)) nearest = &m;
+    }
+    if (nearest) c.whirl = nearest->whirl;
+    out.push_back(std::move(c));
   }
-  return nearest ? nearest->whirl : std::string();
+  return out;
 }
 
 }  // namespace whirl::study

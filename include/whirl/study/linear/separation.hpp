@@ -2,6 +2,7 @@
 // How far a critical speed must stay from where a machine runs.
 
 #include <string>
+#include <vector>
 
 #include "whirl/io/summary.hpp"
 
@@ -28,11 +29,20 @@ struct Separation {
 [[nodiscard]] std::string margin_verdict(const io::Quantity& amplification_factor, const io::Quantity& actual,
                                          const io::Quantity& required);
 
-/// The same of a critical speed of `modes`, of which the summary holds `head` + amplification_factor, separation_margin
-/// and required_margin: with margins but no factor it has no damping, and its factor is infinite.
-[[nodiscard]] std::string margin_verdict_of(const io::StudySummary& summary, const std::string& head);
+/// A critical speed of `modes` as screen, report, tables and the service speed have it.
+struct CriticalSpeed {
+  std::string number;                      ///< by rising speed, from 1
+  io::Quantity speed = {}, mode = {};      ///< the mode is that of the spectrum
+  std::string whirl = {};                  ///< of its mode at the nearest computed speed; empty: not known
+  io::Quantity log_decrement = {};         ///< of the mode there, at fixed speed
+  io::Quantity amplification_factor = {};  ///< pi/log_decrement; no unit: it has no damping, or it grows
+  io::Quantity separation_margin = {};     ///< no unit: no operating speed is known; so of the next
+  io::Quantity required_margin = {};
+  std::string stability = {};  ///< stable, undamped, unstable
+  std::string verdict = {};    ///< margin_verdict(); without damping of an infinite factor
+};
 
-/// Sense of whirl of critical speed K of `modes`: that of its mode at the nearest computed speed. Empty if not known.
-[[nodiscard]] std::string whirl_of_critical(const io::StudySummary& summary, const std::string& k);
+/// Those of a summary, by rising speed.
+[[nodiscard]] std::vector<CriticalSpeed> critical_speeds_of(const io::StudySummary& summary);
 
 }  // namespace whirl::study
