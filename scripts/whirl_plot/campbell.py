@@ -58,13 +58,37 @@ def senses(whirl):
     return [after if before == "either" else before for before, after in zip(whirl, whirl[1:])]
 
 
-def draw_lines(axis, x, y, decrement, whirl):
+def with_borders(study, mode, speed, frequency, decrement, whirl):
+    """A track with the points put in where it was located to begin or to cease to grow, and whether a point is one of them."""
+    rows = [study.get(f"unstable/{k}") for k in ("mode", "from", "to", "begins", "ends")]
+    border = np.zeros(len(speed), bool)
+    if any(row is None for row in rows):
+        return speed, frequency, decrement, whirl, border
+    places = {at for m, low, high, begins, ends in zip(*map(np.atleast_1d, rows)) if int(m) == mode for at, there in ((low, begins), (high, ends)) if there}
+    for at in sorted(places):
+        k = int(np.searchsorted(speed, at))
+        if 0 < k < len(speed) and speed[k] != at and speed[k - 1] != at:
+            speed, frequency, decrement, whirl, border = (np.insert(column, k, value) for column, value in (
+                (speed, at), (frequency, np.interp(at, speed, frequency)), (decrement, 0.0), (whirl, whirl[k - 1]), (border, True)))
+    return speed, frequency, decrement, whirl, border
+
+
+def between(decrement, border):
+    """Decrement that colours the line from each point to the next: the smaller one. A track is unstable from its located border on; where
+    none was located, between two of its speeds that grow."""
+    a, b = decrement[:-1], decrement[1:]
+    worst = np.minimum(a, b)
+    worst = np.where((a < 0) != (b < 0), np.maximum(a, b), worst)
+    return np.where(border[:-1], b, np.where(border[1:], a, worst))
+
+
+def draw_lines(axis, x, y, decrement, whirl, border):
     """One polyline per stretch of one whirl and one class of damping, so that dashes run through."""
     if len(x) == 1:
         if not decrement[0] > OVERDAMPED:  # what does not vibrate needs no dot of its own
             axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
         return
-    worst = np.minimum(decrement[:-1], decrement[1:])
+    worst = between(decrement, border)
     sense = senses(whirl)
     for start, stop in runs(list(zip(sense, map(colour_of, worst), worst > OVERDAMPED))):
         heavy = worst[start] > OVERDAMPED
@@ -112,11 +136,11 @@ def draw(study):
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(8.6, 8.2), sharex=True, height_ratios=[2.2, 1])
     modes = list(modes_of(study))
     every, full = np.unique(study.get("spectrum/speed")), crowded_out(study)
-    for _, speed, frequency, decrement, whirl in modes:
+    for mode, speed, frequency, decrement, whirl in modes:
         for a, b in stretches(speed, frequency, every, full):
-            x = speed[a:b] * to_speed
-            draw_lines(top, x, frequency[a:b] * to_frequency, decrement[a:b], whirl[a:b])
-            draw_lines(bottom, x, decrement[a:b], decrement[a:b], whirl[a:b])
+            at, height, damped, sense, border = with_borders(study, mode, *(column[a:b] for column in (speed, frequency, decrement, whirl)))
+            draw_lines(top, at * to_speed, height * to_frequency, damped, sense, border)
+            draw_lines(bottom, at * to_speed, damped, damped, sense, border)
     all_frequency = np.concatenate([m[2] for m in modes])
     ends = np.array([every[0], every[-1]])
     limit = min(all_frequency.max() * 1.06, 3 * ends[1])

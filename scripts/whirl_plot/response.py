@@ -41,15 +41,15 @@ class Validity:
         """A line with gaps where the response is no answer, dashed about equilibria that are not known to be stable."""
         y = np.where(self.answer, y, np.nan)
         for start, stop in runs(list(self.stable)):
-            # Stretches meet: the line between a stable and an unstable speed belongs to the unstable one.
-            low = max(0, start - 1) if not self.stable[start] else start
-            high = min(len(x), stop + 1) if not self.stable[start] else stop
+            # Stretches meet: unstable from the first unstable speed to the last; of a single one the lines to both sides.
+            wide = self.stable[start] or stop - start == 1
+            low, high = (max(0, start - 1), min(len(x), stop + 1)) if wide else (start, stop)
             axis.plot(x[low:high], y[low:high], **{**look, **({} if self.stable[start] else {"linestyle": DASHED, "label": "_"})})
 
     def shade(self, axis, x):
         for start, stop in runs(list(self.stable)):
             if not self.stable[start]:
-                axis.axvspan(x[max(0, start - 1)], x[stop - 1], color=BAD, alpha=0.06, linewidth=0)
+                axis.axvspan(x[start], x[stop - 1], color=BAD, alpha=0.06, linewidth=0)
 
 
 def draw_lag(axis, x, phase, colour, validity):

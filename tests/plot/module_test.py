@@ -241,7 +241,7 @@ def facts():
     both = multipliers.both_of_pairs(np.array([[0.9 + 0.1j, -0.5, 0.0], [0.8 + 0.2j, 0.8 - 0.2j, 0.1]]))
     assert sorted(both[0][np.isfinite(both[0])], key=lambda z: (z.real, z.imag)) == [-0.5, 0.9 - 0.1j, 0.9 + 0.1j]
     assert np.count_nonzero(np.isfinite(both[1])) == 3, "no pair twice"
-    # A gap where there is no answer, dashed where no equilibrium is stable; both stretches meet at the last stable speed.
+    # A gap where there is no answer, dashed where no equilibrium is stable; both stretches meet at the first one that is not.
     class Told:
         def get(self, name):
             return {"response/answer": np.array([1, 1, 0, 1, 1, 1]), "response/unstable_count": np.array([0, 0, 0, 0, 2, -1])}[name]
@@ -249,9 +249,19 @@ def facts():
     response.Validity(Told(), 6).plot(axis, np.arange(6.0), np.arange(6.0), color="k")
     solid, dashed = axis.lines
     response.plt.close(figure)
-    assert solid.get_linestyle() == "-" and np.array_equal(solid.get_ydata(), [0, 1, np.nan, 3], equal_nan=True), solid.get_ydata()
-    assert dashed.get_linestyle() == "--" and np.array_equal(dashed.get_ydata(), [3, 4, 5]), (dashed.get_linestyle(), dashed.get_ydata())
+    assert solid.get_linestyle() == "-" and np.array_equal(solid.get_ydata(), [0, 1, np.nan, 3, 4], equal_nan=True), solid.get_ydata()
+    assert dashed.get_linestyle() == "--" and np.array_equal(dashed.get_ydata(), [4, 5]), (dashed.get_linestyle(), dashed.get_ydata())
     assert response.is_answer({}) and not response.is_answer({"stability": "undetermined"}) and not response.is_answer({"notes": ["no answer: B1"]})
+    # A track turns red where it was located to grow, else at the first speed at which it grows.
+    from whirl_plot import campbell
+    class Growing:
+        def get(self, name):
+            return {"mode": [1, 1, 2], "from": [2.2, 4.0, 0.1], "to": [2.9, 4.0, 4.0], "begins": [1, 0, 1], "ends": [0, 0, 0]}[name.split("/")[1]]
+    track = np.arange(5.0), np.arange(5.0), np.array([0.3, 0.2, 0.2, -0.1, 0.2]), np.array(["forward"] * 5)
+    at, _, damped, sense, border = campbell.with_borders(Growing(), 1, *track)
+    assert list(at) == [0, 1, 2, 2.2, 3, 4] and list(np.nonzero(border)[0]) == [3] and len(sense) == 6, (at, border)
+    assert [campbell.colour_of(d) == campbell.BAD for d in campbell.between(damped, border)] == [False, False, False, True, False]
+    assert not any(d < 0 for d in campbell.between(track[2], np.zeros(5, bool)))
     from whirl_plot.margins import margin_cells
     assert margin_cells((0.1, 0.002), (0.12, None), "too near") == ["10.00 \u00b1 0.20", "12", "no"]
     assert margin_cells((0.2, None), (0.0, None), "damped, not critical") == ["20", "none", "damped"]
