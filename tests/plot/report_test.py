@@ -106,7 +106,7 @@ def responses(folder):
     with results_with(folder, lambda *_: None) as results:
         study = results["generator pair"]
         table = table_of(study, "Peaks of the response, the four largest of each probe")
-        assert table.head == ["probe", "peak at [rpm]", "amplitude [\u00b5m]", "amplification", "margin [%]", "required [%]", "enough", "equilibrium", ""], table.head
+        assert table.head == ["probe", "peak at [rpm]", "amplitude [\u00b5m]", "amplification N/(N2 \u2212 N1)", "margin [%]", "required [%]", "enough", "equilibrium", ""], table.head
         assert table.rows == [
             ["node 120", "2683.00 \u00b1 0.10", "75.00 \u00b1 0.20", "12.40 \u00b1 0.20", "25.5", "16", "yes", "stable", ""],
             ["", "5120.00 \u00b1 0.10", "91.00 \u00b1 0.20", "\u2013", "42", "16", "\u2013", "unstable", "no amplification factor: the range ends"],
