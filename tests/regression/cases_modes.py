@@ -134,6 +134,15 @@ def missing(h):
     h.true("    both warn", warned(s["m"], "unstable", "forward") and warned(s["over"], "unstable", "forward", "to 3000"))
 
 
+    # Two speeds between which the shape of a mode changes until it is not known again: the critical speed is that of 25 speeds and of the map.
+    s = h.run(h.source / "tests/cases/overhung.yaml", "overhung", launcher=[])
+    wanted = value(s["map"], "softest.backward.1") / RPM
+    for name in ("many", "two", "few"):
+        found = [v["value"] for k, v in s[name]["values"].items() if k.startswith("critical.") and k.endswith(".speed")]
+        h.true(f"one critical speed, {name}", len(found) == 1 and not warned(s[name], "may be missing"), f"{found} {s[name].get('warnings')}")
+        h.close("    as the map has it [rpm]", found[0] if found else None, wanted, 1e-4 * wanted)
+
+
 def fine(h):
     """A shaft beyond dense matrices finds the same modes, and a count says that none is missing."""
     deck = h.source / "tests/cases/missing_unstable.yaml"

@@ -1,16 +1,24 @@
 #include "study/linear/mode_stations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
 namespace {
 
-constexpr int most_refinements = 4;  // of the way between two speeds asked for
+constexpr int most_refinements = 4;             // of the way between two speeds asked for
+constexpr std::size_t most_for_crossings = 24;  // speeds
+
+// Of a damping ratio of 0.2, an amplification factor of 2.5, on, it is no critical speed (API 684).
+bool may_be_critical(const ShaftMode& m) {
+  return spectral::vibrates(m.lambda) && spectral::damping_ratio(m.lambda) < 0.2;
+}
 
 const ShaftMode* mode_with(int id, const Station& station) {
   const auto at =
@@ -26,28 +34,30 @@ std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes) 
   return points;
 }
 
-void follow(std::vector<Station>& stations, std::size_t count,
-            const std::function<std::vector<Station>(const std::vector<double>&)>& modes_at) {
-  const std::size_t most = 2 * stations.size();
-  std::vector<double> widths;
-  for (std::size_t i = 1; i < stations.size(); ++i) widths.push_back(stations[i].speed - stations[i - 1].speed);
-  const double least =
-      widths.empty() ? 0 : *std::max_element(widths.begin(), widths.end()) / std::pow(2.0, most_refinements + 0.5);
-  for (;;) {
-    std::vector<double> between;
-    for (std::size_t i = 1; i < stations.size(); ++i) {
-      const Station &left = stations[i - 1], &right = stations[i];
-      if (right.speed - left.speed > 2 * least && stations.size() + between.size() < most &&
-          !spectral::match_modes(points_of(left.modes), points_of(right.modes), count).sure)
-        between.push_back((left.speed + right.speed) / 2);
-    }
-    if (between.empty()) break;
-    for (Station& s : modes_at(between)) stations.push_back(std::move(s));
-    std::sort(stations.begin(), stations.end(), [](const Station& a, const Station& b) { return a.speed < b.speed; });
+double beyond(Border border, std::complex<double> lambda, double speed) {
+  return border == Border::critical ? lambda.imag() - speed : lambda.real();
+}
+
+namespace {
+
+// Speeds in the middle of stations whose modes cannot be told apart, further apart than `least`.
+std::vector<double> where_modes_mix(const std::vector<Station>& stations, std::size_t count, double least) {
+  std::vector<double> between;
+  for (std::size_t i = 1; i < stations.size(); ++i) {
+    const Station &left = stations[i - 1], &right = stations[i];
+    if (right.speed - left.speed > least &&
+        !spectral::match_modes(points_of(left.modes), points_of(right.modes), count).sure)
+      between.push_back((left.speed + right.speed) / 2);
   }
-  int next = 0;
+  return between;
+}
+
+// Gives each track a number from one on, in the order in which they begin.
+void identify(std::vector<Station>& stations, std::size_t count) {
+  int next = 1;
   for (std::size_t i = 0; i < stations.size(); ++i) {
     auto& now = stations[i].modes;
+    for (ShaftMode& m : now) m.id = -1;
     if (i > 0) {
       const auto& last = stations[i - 1].modes;
       const spectral::ModeMatching pairs = spectral::match_modes(points_of(last), points_of(now), count);
@@ -57,16 +67,105 @@ void follow(std::vector<Station>& stations, std::size_t count,
     for (ShaftMode& m : now)
       if (m.id < 0) m.id = next++;
   }
-  std::map<int, int> number;
-  for (const Station& s : stations)
-    if (s.reported)
-      for (std::size_t k = 0; k < s.listed; ++k) number.emplace(s.modes[k].id, static_cast<int>(number.size()) + 1);
-  for (Station& s : stations)
-    for (ShaftMode& m : s.modes) m.id = number.contains(m.id) ? number.at(m.id) : 0;
 }
 
-double beyond(Border border, std::complex<double> lambda, double speed) {
-  return border == Border::critical ? lambda.imag() - speed : lambda.real();
+// Modes of `s` on one side of the speed that `other` does not have, and that may have a critical speed.
+int alone(const Station& s, const Station& other, bool below) {
+  return static_cast<int>(std::ranges::count_if(s.modes, [&](const ShaftMode& m) {
+    return may_be_critical(m) && !mode_with(m.id, other) && (beyond(Border::critical, m.lambda, s.speed) < 0) == below;
+  }));
+}
+
+// Whether a crossing may hide between two stations: tracks above the speed end at the first, and some below it begin at
+// the second; or more begin below it than end there. If the modes of the first end below the speed, others follow that
+// are not known.
+bool hides_crossing(const Station& first, const Station& second) {
+  const int begin = alone(second, first, true);
+  const bool reaches = std::ranges::any_of(
+      first.modes, [&](const ShaftMode& m) { return beyond(Border::critical, m.lambda, first.speed) > 0; });
+  return (begin > 0 && alone(first, second, false) > 0) || (reaches && begin > alone(first, second, true));
+}
+
+// The speed at which the parabola through the distances of a track from a border at three speeds has its extreme, if
+// it has crossed the border there, which none of the three has.
+std::optional<double> dip_of(const std::array<double, 3>& s, const std::array<double, 3>& f) {
+  if (!(f[0] * f[1] > 0 && f[1] * f[2] > 0)) return {};
+  if (std::abs(f[1]) > std::min(std::abs(f[0]), std::abs(f[2]))) return {};
+  const double left = (f[1] - f[0]) / (s[1] - s[0]), right = (f[2] - f[1]) / (s[2] - s[1]),
+               bend = (right - left) / (s[2] - s[0]);
+  const double slope = left + bend * (s[1] - s[0]), at = s[1] - slope / (2 * bend);
+  const double there = f[1] - slope * slope / (4 * bend);
+  if (!(there * f[1] < 0) || at <= s[0] || at >= s[2]) return {};
+  return at;
+}
+
+// Speeds at which borders may be crossed unseen: between two stations, and where a track nears a border and leaves it
+// again.
+std::vector<double> where_crossings_hide(const std::vector<Station>& stations) {
+  std::vector<double> out;
+  for (std::size_t i = 1; i < stations.size(); ++i)
+    if (hides_crossing(stations[i - 1], stations[i])) out.push_back((stations[i - 1].speed + stations[i].speed) / 2);
+  for (std::size_t i = 1; i + 1 < stations.size(); ++i) {
+    const Station &before = stations[i - 1], &here = stations[i], &after = stations[i + 1];
+    for (const ShaftMode& m : here.modes) {
+      const ShaftMode *a = mode_with(m.id, before), *b = mode_with(m.id, after);
+      if (!a || !b || m.undamped) continue;
+      for (const Border border : {Border::critical, Border::stability}) {
+        if (border == Border::critical && !may_be_critical(m)) continue;
+        const auto dip = dip_of({before.speed, here.speed, after.speed},
+                                {beyond(border, a->lambda, before.speed), beyond(border, m.lambda, here.speed),
+                                 beyond(border, b->lambda, after.speed)});
+        if (dip) out.push_back(*dip);
+      }
+    }
+  }
+  constexpr double nearest = 1e-3;  // of the speed
+  std::ranges::sort(out);
+  std::vector<double> apart;
+  for (const double at : out)
+    if ((apart.empty() || at - apart.back() > nearest * at) &&
+        std::ranges::none_of(stations, [&](const Station& s) { return std::abs(s.speed - at) <= nearest * at; }))
+      apart.push_back(at);
+  return apart;
+}
+
+}  // namespace
+
+void follow(std::vector<Station>& stations, std::size_t count,
+            const std::function<std::vector<Station>(const std::vector<double>&)>& modes_at) {
+  const auto insert = [&](const std::vector<double>& speeds) {
+    for (Station& s : modes_at(speeds)) stations.push_back(std::move(s));
+    std::ranges::sort(stations, {}, &Station::speed);
+  };
+  double widest = 0;
+  for (std::size_t i = 1; i < stations.size(); ++i)
+    widest = std::max(widest, stations[i].speed - stations[i - 1].speed);
+  const double least = 2 * widest / std::pow(2.0, most_refinements + 0.5);
+  std::size_t left = stations.size();
+  for (;;) {
+    std::vector<double> ask = where_modes_mix(stations, count, least);
+    ask.resize(std::min(ask.size(), left));
+    if (ask.empty()) break;
+    left -= ask.size();
+    insert(ask);
+  }
+  for (left += most_for_crossings;;) {
+    identify(stations, count);
+    std::vector<double> ask = where_crossings_hide(stations);
+    ask.resize(std::min(ask.size(), left));
+    if (ask.empty()) break;
+    left -= ask.size();
+    insert(ask);
+  }
+  std::map<int, int> number;
+  const auto give = [&](int id) { number.emplace(id, static_cast<int>(number.size()) + 1); };
+  for (const Station& s : stations)
+    if (s.reported)
+      for (std::size_t k = 0; k < s.listed; ++k) give(s.modes[k].id);
+  for (const Crossing& c : crossings_of(stations))
+    if (c.border == Border::stability || may_be_critical(c.guide)) give(c.guide.id);
+  for (Station& s : stations)
+    for (ShaftMode& m : s.modes) m.id = number.contains(m.id) ? number.at(m.id) : -m.id;
 }
 
 std::vector<Crossing> crossings_of(const std::vector<Station>& stations) {
@@ -80,21 +179,13 @@ std::vector<Crossing> crossings_of(const std::vector<Station>& stations) {
       for (const Border border : {Border::critical, Border::stability}) {
         const double f0 = beyond(border, b->lambda, before.speed), f1 = beyond(border, m.lambda, stations[i].speed);
         if (f0 * f1 < 0)
-          out.push_back({border, before.speed, stations[i].speed, f0, f1, m, i, b->put_back || m.put_back});
+          out.push_back({border, before.speed, stations[i].speed, f0, f1, m, i, b->put_back || m.put_back, *b});
       }
     }
   return out;
 }
 
 std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations) {
-  constexpr double critical = 0.2;  // damping ratio of an amplification factor of 2.5: others are no critical speeds
-  // Modes of `s` on one side of the speed that `other` does not have. Those that results do not show have no identity.
-  const auto alone = [](const Station& s, const Station& other, bool below) {
-    return static_cast<int>(std::ranges::count_if(s.modes, [&](const ShaftMode& m) {
-      return m.id > 0 && !mode_with(m.id, other) && spectral::vibrates(m.lambda) &&
-             spectral::damping_ratio(m.lambda) < critical && (beyond(Border::critical, m.lambda, s.speed) < 0) == below;
-    }));
-  };
   std::vector<LostCrossings> out;
   for (std::size_t k = 1; k < stations.size(); ++k) {
     const Station &before = stations[k - 1], &here = stations[k];
@@ -126,22 +217,83 @@ void put_back(const LostMode& lost, const std::vector<ShaftMode>& found, std::ve
   stations[lost.station].modes.push_back(std::move(m));
 }
 
-CrossingPoint locate(Crossing c, const std::function<std::vector<ShaftMode>(double)>& modes_at) {
-  for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
-    const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
-    const auto there = modes_at(s);
-    const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
-    const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
-    if (found == pairs.before.end()) break;
-    const ShaftMode& m = there[static_cast<std::size_t>(found - pairs.before.begin())];
-    const double f = beyond(c.border, m.lambda, s);
-    if (f * c.f1 < 0) c.s0 = c.s1, c.f0 = c.f1;
-    c.s1 = s;
-    c.f1 = f;
-    c.guide.lambda = m.lambda;
-    if (std::abs(f) < 1e-7 * (c.border == Border::critical ? s : 1e-3 * std::abs(m.lambda))) break;
+namespace {
+
+// The same, by the mode that is known at the speed `known`; nothing where it could not be followed to the border.
+std::optional<CrossingPoint> located_by(ShaftMode guide, double known, const Crossing& c,
+                                        const std::function<std::vector<ShaftMode>(double)>& modes_at) {
+  constexpr int most = 24, most_lost = 4;  // speeds; in a row at which the mode is not found
+  constexpr int smooth = 6;                // speeds within which secants find the zero of what does not jump
+  const bool may_jump = c.border == Border::stability;
+  std::array<double, 2> s{c.s0, c.s1}, f{c.f0, c.f1};
+  int lost = 0;
+  std::size_t moved = 2;
+  double at = 0;
+  for (int k = 0; k < most && lost <= most_lost; ++k) {
+    // Where the mode is not found, the next look is half as far from where it was.
+    at = lost > 0                  ? (at + known) / 2
+         : may_jump && k >= smooth ? (s[0] + s[1]) / 2
+                                   : s[1] - f[1] * (s[1] - s[0]) / (f[1] - f[0]);
+    const auto there = modes_at(at);
+    const auto pairs = spectral::match_modes({{guide.lambda, guide.both()}}, points_of(there), 0);
+    const auto found = std::ranges::find(pairs.before, 0);
+    lost = found == pairs.before.end() ? lost + 1 : 0;
+    if (lost > 0) continue;
+    guide = there[static_cast<std::size_t>(found - pairs.before.begin())];
+    known = at;
+    const double here = beyond(c.border, guide.lambda, at);
+    const double scale = c.border == Border::critical ? at : std::abs(guide.lambda);
+    if (std::abs(here) < (c.border == Border::critical ? 1e-7 : 1e-10) * scale)
+      return CrossingPoint{at, guide.lambda, guide.both()};
+    // An end that stays is halved (Illinois).
+    const std::size_t moves = here * c.f0 > 0 ? 0 : 1;
+    if (moves == moved) f[1 - moves] /= 2;
+    moved = moves;
+    s[moves] = at;
+    f[moves] = here;
+    // A real part may jump across the border, as that of hysteresis does where the shaft turns as fast as it whirls. A
+    // frequency does not: there the mode was taken for another one.
+    if (may_jump && std::abs(s[1] - s[0]) < 1e-5 * at) return CrossingPoint{at, guide.lambda, guide.both()};
   }
-  return {c.s1, c.guide.lambda};
+  return {};
+}
+
+}  // namespace
+
+CrossingPoint locate(const Crossing& c, const std::function<std::vector<ShaftMode>(double)>& modes_at) {
+  if (const auto found = located_by(c.guide, c.s1, c, modes_at)) return *found;
+  if (const auto found = located_by(c.before, c.s0, c, modes_at)) return *found;
+  return {(c.s0 + c.s1) / 2, c.guide.lambda, c.guide.both(), std::abs(c.s1 - c.s0) / 2};
+}
+
+std::vector<bool> found_twice(const std::vector<Station>& stations, const std::vector<Crossing>& crossings,
+                              const std::vector<CrossingPoint>& points, std::vector<LostCrossings>& lost) {
+  constexpr double same = 1e-6, alike = 0.9;
+  const auto below = [](const Station& s) {
+    return static_cast<int>(std::ranges::count_if(s.modes, [&](const ShaftMode& m) {
+      return may_be_critical(m) && beyond(Border::critical, m.lambda, s.speed) < 0;
+    }));
+  };
+  std::vector<bool> out(crossings.size(), false);
+  std::map<std::size_t, int> passed;  // by station: modes that come below the speed, less those that leave
+  std::set<std::size_t> with_twins;
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const Crossing& c = crossings[i];
+    if (c.border != Border::critical) continue;
+    for (std::size_t k = 0; k < i && !out[i]; ++k)
+      out[i] = crossings[k].border == Border::critical && crossings[k].station == c.station &&
+               std::abs(points[k].lambda - points[i].lambda) <= same * std::abs(points[i].lambda) &&
+               spectral::mac(points[k].shape, points[i].shape) > alike;
+    if (out[i])
+      with_twins.insert(c.station);
+    else
+      passed[c.station] += c.f0 > 0 ? 1 : -1;
+  }
+  for (const std::size_t at : with_twins) {
+    const int missing = below(stations[at]) - below(stations[at - 1]) - passed[at];
+    if (missing > 0) lost.push_back({stations[at - 1].speed, stations[at].speed, missing});
+  }
+  return out;
 }
 
 std::vector<UnstableRange> unstable_ranges(const std::vector<Station>& stations, const std::vector<Crossing>& crossings,

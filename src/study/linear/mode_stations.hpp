@@ -22,9 +22,12 @@ struct Station {
 
 [[nodiscard]] std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes);
 
-/// Puts stations between those whose modes cannot be told apart, and then gives each mode an identity: numbers from one
-/// in the order in which the results show the modes, zero for modes that they do not show. As many speeds are added at
-/// most as were asked for. Of each station the first `count` modes must be told apart.
+/// Puts stations between those whose modes cannot be told apart, as many at most as were asked for; then a few more
+/// where a mode may cross a border unseen: where the numbers of modes below the speed at two stations differ by others
+/// than those that are followed across it, and where a mode nears a border at three stations and leaves it again.
+/// Then it gives each mode an identity: numbers from one in the order in which the results show the modes, next for
+/// modes that cross a border, and negative ones for all others. Of each station the first `count` modes must be told
+/// apart.
 void follow(std::vector<Station>& stations, std::size_t count,
             const std::function<std::vector<Station>(const std::vector<double>&)>& modes_at);
 
@@ -42,16 +45,17 @@ struct Crossing {
   ShaftMode guide{};        ///< the mode at s1
   std::size_t station = 0;  ///< at s1
   bool outside = false;     ///< where the mode does not grow it is not among those asked for
+  ShaftMode before{};       ///< the mode at s0
 };
 [[nodiscard]] std::vector<Crossing> crossings_of(const std::vector<Station>& stations);
 
-/// Two stations between which critical speeds may be missing: modes above the speed end at the first one, and as many
-/// below it begin at the second, since they could not be followed. Modes damped too much for a critical speed (API 684)
-/// do not count.
+/// Two stations between which critical speeds may be missing.
 struct LostCrossings {
   double from = 0, to = 0;  // [rad/s]
   int count = 0;
 };
+/// Modes above the speed end at the first one, and as many below it begin at the second, since they could not be
+/// followed. Modes damped too much for a critical speed (API 684) do not count.
 [[nodiscard]] std::vector<LostCrossings> lost_crossings(const std::vector<Station>& stations);
 
 /// A mode that grows at one station and is not listed at the next or the one before: where it does not grow it may lie
@@ -70,10 +74,20 @@ void put_back(const LostMode& lost, const std::vector<ShaftMode>& found, std::ve
 struct CrossingPoint {
   double speed = 0;
   std::complex<double> lambda = 0;
+  std::vector<std::complex<double>> shape{};  ///< as ShaftMode::both()
+  double left = 0;  ///< how far the border may be from there, if the mode could not be followed to it [rad/s]
 };
-/// Secants on the distance from the border, each with the modes at that speed, of which the one like the guide is
-/// taken. Where none is, the last speed stands.
-[[nodiscard]] CrossingPoint locate(Crossing crossing, const std::function<std::vector<ShaftMode>(double)>& modes_at);
+/// Secants between both ends, each with the modes at that speed, of which the one like the mode found last is taken,
+/// beginning with that at s1; where this loses it, with that at s0.
+[[nodiscard]] CrossingPoint locate(const Crossing& crossing,
+                                   const std::function<std::vector<ShaftMode>(double)>& modes_at);
+
+/// Which of the critical speeds at `points`, as many as `crossings`, was found twice: between two stations modes of
+/// like shapes may have been taken for one another. `lost`: where by the numbers of modes below the speed another one
+/// is missing for it.
+[[nodiscard]] std::vector<bool> found_twice(const std::vector<Station>& stations,
+                                            const std::vector<Crossing>& crossings,
+                                            const std::vector<CrossingPoint>& points, std::vector<LostCrossings>& lost);
 
 /// Speeds over which one mode grows.
 struct UnstableRange {

@@ -199,17 +199,19 @@ StudyResult Modes::run(Context& context) {
     crossings = crossings_of(stations);
   }
   const auto refine = [&](std::size_t i) {
-    std::vector<int> missed_on_the_way;
+    std::vector<double> missed_on_the_way;
     const CrossingPoint at = locate(crossings[i], [&](double speed) {
       ModeSearch search;
       auto there = crossings[i].outside ? modes_about(crossings[i].guide, speed, search)
                                         : shaft_modes(system, walker.at(speed), options.count, more, limit, search);
-      missed_on_the_way.push_back(static_cast<int>(search.missed));
+      missed_on_the_way.push_back(search.missed);
       return there;
     });
     // Other ranks and resumed runs see what is returned, and nothing else.
-    std::vector<double> out{at.speed, at.lambda.real(), at.lambda.imag()};
+    std::vector<double> out{at.speed, at.lambda.real(), at.lambda.imag(), at.left,
+                            static_cast<double>(missed_on_the_way.size())};
     out.insert(out.end(), missed_on_the_way.begin(), missed_on_the_way.end());
+    for (const auto& v : at.shape) out.insert(out.end(), {v.real(), v.imag()});
     return out;
   };
   const auto refined = distribute(layout, crossings.size(), refine, pieces, "critical", walker.trail());
@@ -221,14 +223,26 @@ StudyResult Modes::run(Context& context) {
   std::vector<Critical> criticals;
   std::vector<CrossingPoint> points;
   std::vector<double> errors;  // of the speeds
+  for (const std::vector<double>& r : refined) {
+    points.push_back({r[0], {r[1], r[2]}, {}, r[3]});
+    auto at = r.begin() + 5;
+    for (const auto end = at + static_cast<std::ptrdiff_t>(r[4]); at != end; ++at) missed.add(static_cast<int>(*at));
+    for (; at != r.end(); at += 2) points.back().shape.emplace_back(at[0], at[1]);
+  }
+  std::vector<LostCrossings> may_be_missing;
+  if (options.range) may_be_missing = lost_crossings(stations);
+  const std::vector<bool> twice = found_twice(stations, crossings, points, may_be_missing);
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const Crossing& c = crossings[i];
-    for (std::size_t k = 3; k < refined[i].size(); ++k) missed.add(static_cast<int>(refined[i][k]));
-    points.push_back({refined[i][0], {refined[i][1], refined[i][2]}});
     const auto bar = bars.at(c.guide.id, points[i].speed);
     const bool critical = c.border == Border::critical;
-    errors.push_back(bar[critical ? 1 : 0] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)));
-    if (critical)
+    errors.push_back(points[i].left + bar[critical ? 1 : 0] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)));
+    if (points[i].left > 0)
+      summary.warnings.push_back(fmt::format(
+          "mode {} {} between {:.6g} and {:.6g} {}, but could not be followed to where: more points show it",
+          c.guide.id, critical ? "has a critical speed" : "becomes stable or unstable", deck::from_si(c.s0, unit),
+          deck::from_si(c.s1, unit), unit));
+    if (critical && !twice[i])
       criticals.push_back({points[i].speed, spectral::log_decrement(points[i].lambda), c.guide.id, errors[i], bar[2]});
   }
 
@@ -251,12 +265,11 @@ StudyResult Modes::run(Context& context) {
   group.set("speed_unit", unit);
   put_searches(group, summary, speeds, searches);
 
-  if (options.range)
-    for (const LostCrossings& lost : lost_crossings(stations))
-      summary.warnings.push_back(fmt::format(
-          "between {:.6g} and {:.6g} {} critical speeds may be missing: {} of the modes above the speed could not be "
-          "followed, and as many below it are new. More points show them",
-          deck::from_si(lost.from, unit), deck::from_si(lost.to, unit), unit, lost.count));
+  for (const LostCrossings& lost : may_be_missing)
+    summary.warnings.push_back(fmt::format(
+        "between {:.6g} and {:.6g} {} critical speeds may be missing: {} of the modes could not be followed across the "
+        "speed. More points show them",
+        deck::from_si(lost.from, unit), deck::from_si(lost.to, unit), unit, lost.count));
 
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   const auto operating = operating_range(options.operating, {}, context.machine.service_speed);
