@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace whirl::study {
 namespace {
@@ -112,6 +113,33 @@ TEST(ResponsePeaks, WhyThereIsNoFactorIsSaid) {
   }
   const Peak last = peak_at(cut, cut.tops().back());
   EXPECT_NE(last.no_factor.find("before the range ends"), std::string::npos) << last.no_factor;
+}
+
+// Lines between samples cut no flank: between neighbours within ten half widths they leave less than a tenth of the
+// peak.
+TEST(ResponsePeaks, FlanksHaveSamplesEnoughForLines) {
+  std::vector<double> speeds{200, 240, 270, 310, 360};
+  for (const auto& [passes, ask] : {std::pair{10, 0}, {10, 1}, {1, 2}})
+    for (int pass = 0; pass < passes; ++pass) {
+      std::vector<double> more;
+      const ResponseCurve c = sampled(speeds);
+      const std::size_t top = c.tops().front();
+      ask == 0   ? ask_for_top(c, top, pass, more)
+      : ask == 1 ? ask_for_width(c, top, more)
+                 : ask_for_flanks(c, top, more);
+      EXPECT_LE(more.size(), 14U);
+      speeds.insert(speeds.end(), more.begin(), more.end());
+    }
+  const ResponseCurve c = sampled(speeds);
+  for (std::size_t k = 1; k < speeds.size(); ++k) {
+    const double middle = (c.speed[k - 1] + c.speed[k]) / 2;
+    if (std::abs(middle - top_speed) < 20 * top_speed / (2 * quality)) {
+      EXPECT_NEAR((c.height[k - 1] + c.height[k]) / 2, height(middle), 0.05) << middle;
+    }
+  }
+  std::vector<double> more;
+  ask_for_flanks(c, c.tops().front(), more);
+  EXPECT_TRUE(more.empty());
 }
 
 }  // namespace

@@ -144,6 +144,36 @@ void ask_for_width(const ResponseCurve& curve, std::size_t top, std::vector<doub
     if (left[k] > width_tolerance) speeds.push_back(sides[k]->crossing);
 }
 
+void ask_for_flanks(const ResponseCurve& curve, std::size_t top, std::vector<double>& speeds) {
+  // Of a flank f = 1/d a line between two distances of this ratio leaves 4 %.
+  constexpr double ratio = 1.8, least = 0.5, most = 20;
+  const Peak peak = peak_at(curve, top);
+  const double here = peak.speed;
+  double half = here / (2 * peak.amplification);
+  if (peak.undamped()) half = 1e-3 * here;
+  if (!(half > 0)) return;
+  const std::vector<double> asked = speeds;
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<double> distances{least * half};
+    for (const auto* all : {&curve.speed, &asked})
+      for (const double s : *all)
+        if (const double d = side * (s - here); d > least * half / ratio) distances.push_back(d);
+    std::ranges::sort(distances);
+    // The first one stands for its own half width if a sample does.
+    if (distances.size() > 1 && distances[1] < ratio * least * half)
+      distances.erase(distances.begin());
+    else if (distances.size() > 1)
+      speeds.push_back(here + side * distances.front());
+    for (std::size_t k = 0; k + 1 < distances.size() && distances[k] < most * half; ++k) {
+      const int parts = static_cast<int>(std::ceil(std::log(distances[k + 1] / distances[k]) / std::log(ratio)));
+      for (int i = 1; i < parts; ++i) {
+        const double d = distances[k] * std::pow(distances[k + 1] / distances[k], static_cast<double>(i) / parts);
+        if (d < most * half) speeds.push_back(here + side * d);
+      }
+    }
+  }
+}
+
 Peak peak_at(const ResponseCurve& curve, std::size_t top) {
   Peak p{curve.speed[top], curve.height[top], 0, {}};
   p.amplification = amplification(curve, top, p.no_factor);

@@ -56,6 +56,10 @@ struct Peak {
 void ask_for_top(const ResponseCurve& curve, std::size_t top, int pass, std::vector<double>& speeds);
 /// Speeds [rad/s] that settle the width of a peak.
 void ask_for_width(const ResponseCurve& curve, std::size_t top, std::vector<double>& speeds);
+/// Speeds [rad/s] beside a peak where straight lines between samples would cut its flanks: from 1/2 to 20 half widths
+/// on either side, so that the distances of neighbours from the top have a ratio of at most 1.8. The half width is N/(2
+/// AF). None without a factor; an undamped peak counts as one of AF 500.
+void ask_for_flanks(const ResponseCurve& curve, std::size_t top, std::vector<double>& speeds);
 /// Of the speeds that were asked for, rising, those that are at least least_step from each other and from the `known`
 /// ones, which rise.
 [[nodiscard]] std::vector<double> worth_asking(std::vector<double> speeds, const std::vector<double>& known);

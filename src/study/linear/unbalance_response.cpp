@@ -203,6 +203,16 @@ StudyResult UnbalanceResponse::run(Context& context) {
     refine();
     add_tops(counted, curve, places, false);
   }
+  // Lines between samples cut the flanks of peaks: a few more there, none of which anybody asked for.
+  if (options.refine)
+    (void)has_answer([&] {
+      std::vector<double> flanks;
+      for (const Place& place : places) {
+        const ResponseCurve of = curve_at(curve, place.of, place.at);
+        for (const std::size_t k : of.tops()) ask_for_flanks(of, k, flanks);
+      }
+      add(std::move(flanks));
+    });
   if (!options.refine && !beside.empty())
     if (const auto words = shown_by(curve, answer_of([&] { return at_speeds(beside); }), hidden.found, places, unit);
         !words.empty())
