@@ -102,8 +102,8 @@ std::string mark_of(const io::PeakEntry& p) {
   return marks.empty() ? "-" : fmt::format("{}", fmt::join(marks, "; "));
 }
 
-// Head of the column of amplification factors of a response.
-constexpr const char* half_power = "AF = N/(N2 - N1)";
+// Head of the column of amplification factors of a response: N/(N2 - N1) between the points at half power.
+constexpr const char* half_power = "AF (3 dB)";
 
 // The peaks of one place by falling height, and below them what their notes say, each once.
 std::string peaks_at(const std::string& place, const std::vector<io::PeakEntry>& own) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "study/linear/open_ends.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -140,6 +142,30 @@ TEST(ResponsePeaks, FlanksHaveSamplesEnoughForLines) {
   std::vector<double> more;
   ask_for_flanks(c, c.tops().front(), more);
   EXPECT_TRUE(more.empty());
+}
+
+// A range that ends on the flank of a peak; far below a resonance a response rises without one.
+TEST(OpenEnds, AreFlanksOfPeaks) {
+  const auto part = [](double from, double to) {
+    std::vector<double> speeds;
+    for (int k = 0; k <= 20; ++k) speeds.push_back(from + (to - from) * k / 20);
+    return sampled(speeds);
+  };
+  for (const double end : {250.0, 275.0, 283.0}) {
+    EXPECT_TRUE(ends_on_flank(part(150, end), true)) << end;
+    EXPECT_TRUE(ends_on_flank(part(2 * top_speed - end, 450), false)) << end;
+  }
+  EXPECT_FALSE(ends_on_flank(part(150, 300), true));
+  EXPECT_FALSE(ends_on_flank(part(150, 300), false));
+  ResponseCurve far;
+  for (int k = 1; k <= 20; ++k) {
+    far.speed.push_back(10.0 * k);
+    far.height.push_back(1e-9 * std::pow(10.0 * k, 2));
+  }
+  EXPECT_FALSE(ends_on_flank(far, true));
+  // Of the resonances of a machine one has to stand there, and to vibrate.
+  EXPECT_TRUE(resonance_near({{-3, 280}, {-3, -280}}, 250, 0.1, 0.5));
+  EXPECT_FALSE(resonance_near({{-3, 200}, {-3, 400}, {-280, 10}}, 250, 0.1, 0.5));
 }
 
 }  // namespace

@@ -139,6 +139,13 @@ std::vector<Resonance> undamped_resonances(const std::vector<Complex>& eigenvalu
   return out;
 }
 
+bool resonance_near(const std::vector<Complex>& eigenvalues, double speed, double below, double above) {
+  return std::ranges::any_of(eigenvalues, [&](Complex v) {
+    const double apart = (std::abs(v) - speed) / speed;
+    return v.imag() > 0 && has_peak(v) && apart >= -below && apart <= above;
+  });
+}
+
 std::vector<double> around(const Resonance& r) {
   return {r.speed - 1.1 * r.width, r.speed + 0.1 * r.width, r.speed + 1.2 * r.width};
 }

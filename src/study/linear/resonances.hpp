@@ -52,6 +52,11 @@ inline constexpr double no_peak = 0.7071;
                                                        const std::vector<double>& computed,
                                                        const ResonanceSearch& search);
 
+/// Whether a resonance with a peak, at most `below` of `speed` below it or `above` of it above it, stands among the
+/// eigenvalues [1/s] there.
+[[nodiscard]] bool resonance_near(const std::vector<std::complex<double>>& eigenvalues, double speed, double below,
+                                  double above);
+
 /// Speeds around a resonance at which a response shows it: on either side, and just beside its top. At the top itself
 /// an undamped machine has no response.
 [[nodiscard]] std::vector<double> around(const Resonance& resonance);

@@ -17,6 +17,7 @@
 #include "study/bars/unresolved.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
+#include "study/linear/open_ends.hpp"
 #include "study/linear/peak_list.hpp"
 #include "study/linear/resonances.hpp"
 #include "study/linear/responder.hpp"
@@ -234,6 +235,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
         "above {:.6g} {} the response is not that of the shaft (its sections shear against one another, and beam "
         "theory ends): end the range there",
         deck::from_si(cut_off, unit), unit));
+
+  for (std::string& line : open_ends(curve, places, spectra, unit)) summary.warnings.push_back(std::move(line));
 
   StableSpeeds stable;
   if (lossless) {

@@ -1,0 +1,55 @@
+#include "study/linear/open_ends.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstddef>
+
+#include "whirl/deck/units.hpp"
+
+namespace whirl::study {
+
+bool ends_on_flank(const ResponseCurve& curve, bool last) {
+  constexpr double rising = 4, falling = 1.5, near = 0.1;
+  const std::size_t n = curve.speed.size();
+  if (n < 3) return false;
+  const auto at = [&](std::size_t k) { return last ? n - 1 - k : k; };
+  const double s0 = curve.speed[at(0)], s1 = curve.speed[at(1)], s2 = curve.speed[at(2)];
+  const double f0 = curve.height[at(0)], f1 = curve.height[at(1)], f2 = curve.height[at(2)];
+  if (!(f0 > f1) || !(f1 > 0) || !(f2 > 0) || !(s0 > 0) || !(s1 > 0)) return false;
+  const double slope = std::abs(std::log(f0 / f1) / std::log(s0 / s1));
+  if (slope >= (last ? rising : falling)) return true;
+  // The foot of the parabola of g = 1/f^2, seen from the end.
+  const double g0 = 1 / (f0 * f0), g1 = 1 / (f1 * f1), g2 = 1 / (f2 * f2);
+  const double d01 = (g0 - g1) / (s0 - s1), d12 = (g1 - g2) / (s1 - s2), bend = (d01 - d12) / (s0 - s2);
+  if (!(bend > 0)) return false;
+  const double foot = s0 - (d01 + bend * (s0 - s1)) / (2 * bend);
+  const double beyond = last ? foot - s0 : s0 - foot;
+  return beyond > 0 && beyond < near * s0;
+}
+
+std::vector<std::string> open_ends(const std::vector<Response>& curve, const std::vector<Place>& places,
+                                   const Spectra& spectra, const std::string& unit) {
+  constexpr double this_side = 0.1, beyond = 0.5;
+  std::vector<std::string> out;
+  for (const bool last : {false, true}) {
+    const double end = last ? curve.back().speed : curve.front().speed;
+    const auto known = spectra.find(end);
+    if (known == spectra.end() ||
+        !resonance_near(known->second, end, last ? this_side : beyond, last ? beyond : this_side))
+      continue;
+    std::vector<std::string> where;
+    for (const Place& place : places)
+      if (ends_on_flank(curve_at(curve, place.of, place.at), last)) where.push_back(place.label);
+    if (where.empty()) continue;
+    out.push_back(
+        fmt::format("the amplitude {} at the {} of the range, {:.6g} {} ({}): the peak lies {} it and is none of "
+                    "those listed",
+                    last ? "is still rising" : "is falling already", last ? "end" : "beginning",
+                    deck::from_si(end, unit), unit, fmt::join(where, "; "), last ? "beyond" : "below"));
+  }
+  return out;
+}
+
+}  // namespace whirl::study
