@@ -135,20 +135,13 @@ Vec Walker::at(double speed) {
 solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   spectral::EigenOptions options;
   options.count = 60;
-  options.shapes = false;
+  options.shapes = may_have_mesh_waves(system);
   options.rounding = true;
-  const auto grows = [](const spectral::Mode& m) { return !m.neutral() && m.lambda.real() > 0 && m.lambda.imag() > 0; };
   // Without damping the real parts are rounding errors, and none of them is a bifurcation.
   std::vector<std::complex<double>> values;
   std::map<double, double> rounding;  // by real part: that of the values that are nearly undamped
   int neutral = 0;
-  solve::MachineModes found = solve::machine_modes(system, x, options);
-  const bool waves =
-      may_have_mesh_waves(system) && std::any_of(found.modes.begin(), found.modes.end(), grows);  // perhaps
-  if (waves) {
-    options.shapes = true;
-    found = solve::machine_modes(system, x, options);
-  }
+  const solve::MachineModes found = solve::machine_modes(system, x, options);
   const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const double limit = rotor ? resolved_to(rotor->train().rotor) : infinite;
@@ -157,7 +150,8 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   std::vector<std::complex<double>> of_mesh;
   for (const auto& mode : found.modes) {
     if (mode.lambda.real() > 0 && is_of_elements(mode.lambda, limit)) continue;
-    if (waves && grows(mode) && cells_per_wave(system, mode.shape)) {
+    const bool pair_grows = !mode.neutral() && mode.lambda.real() > 0 && mode.lambda.imag() > 0;
+    if (options.shapes && pair_grows && cells_per_wave(system, mode.shape)) {
       of_mesh.push_back(mode.lambda);
       continue;
     }
