@@ -7,6 +7,8 @@ import math
 import subprocess
 import sys
 
+import h5py
+import numpy as np
 from harness import Harness, value
 
 h = Harness(sys.argv[1], sys.argv[2], [])
@@ -113,6 +115,30 @@ for name in ("load", "cycles"):
     h.true(f"{name}: and no threshold", not any(v.startswith(("threshold", "stable_")) for v in s["values"]), str(s["values"]))
 h.true("modes: it is none", waves["modes"]["modes"] and all(m["real"] < 0 for m in waves["modes"]["modes"]), str(waves["modes"]["modes"]))
 h.true("static: nothing of the machine grows", not any("unstable" in w for w in waves["at rest"]["warnings"]), str(waves["at rest"]["warnings"]))
+# Between the bifurcations of a branch of cycles every point is asked: the multipliers that count are those of the machine.
+h.true("cycles: stable up to the wave, not known beyond", [r["stability"] for r in waves["cycles"]["ranges"]] == ["stable", "undetermined"] and
+       2.28 < waves["cycles"]["ranges"][0]["to"] < 2.2918 < waves["cycles"]["ranges"][1]["from"] < 2.30, str(waves["cycles"]["ranges"]))
+with h5py.File(h.work / "central/results.h5") as f:
+    b = f["studies/cycles/branch"]
+    h.true("    the points say so", ((b["mesh_waves"][()] > 0) == (b["parameter"][()] > 2.29)).all() and not b["unstable_count"][()].any(), str(b["mesh_waves"][()]))
+# A curve of Hopf points over speed and load in such a film, through a Hopf point that a branch over the load finds. Central and upwind
+# differences agree within their bars.
+curve = {}
+for differences in ("central", "upwind"):
+    s = run("mesh_wave.yaml", f"curve {differences}", "rotor.load=0.32 N", "bearings.half.film.cells=[30, 4]", f"bearings.half.film.differences={differences}",
+            "studies=[{equilibrium_branch: {name: rest, parameter: speed, range: {from: 420 rad/s, to: 450 rad/s}}}, {locus: {name: curve, of: rest, bifurcation: 1, "
+            "parameter: rotor.load, range: {from: 0.3 N, to: 0.8 N}, first_range: {from: 400 rad/s, to: 640 rad/s}}}, "
+            "{equilibrium_branch: {name: load, parameter: rotor.load, speed: 600 rad/s, range: {from: 0.5 N, to: 0.7 N}}}]")
+    with h5py.File(h.work / f"curve {differences}/results.h5") as f:
+        table = {k: f["studies/curve/locus"][k][()] for k in ("parameter", "second", "second_uncertainty")}
+    order = table["parameter"].argsort()
+    at = lambda column: np.interp(600, table["parameter"][order], table[column][order])  # noqa: E731
+    hopf = s["load"]["bifurcations"][0]
+    h.close(f"{differences}: the curve runs through the Hopf point at 600 rad/s [N]", at("second"), hopf["value"], 2e-4)
+    h.true("    no wave of the mesh, nothing else unstable", hopf["type"] == "hopf" and not s["curve"].get("warnings"), str(s["curve"].get("warnings")))
+    curve[differences] = at("second"), at("second_uncertainty")
+(a, bar_a), (b, bar_b) = curve.values()
+h.true(f"{a:.4f} +- {bar_a:.4f} N by central and {b:.4f} +- {bar_b:.4f} N by upwind differences", abs(a - b) <= bar_a + bar_b and max(bar_a, bar_b) < 0.1 * a)
 # Without the word the film has no such waves.
 plain = run("mesh_wave.yaml", "default", "bearings.half.film={type: compliant_short, compliance: 0.1, reference_speed: 160 rad/s, cells: [40, 4]}")
 for name, s in plain.items():

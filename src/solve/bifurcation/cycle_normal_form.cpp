@@ -101,9 +101,12 @@ void find_plane(BorderedMonodromy& bordered, Complex multiplier) {
 
 }  // namespace
 
-VectorXcd neimark_sacker_vector(CycleProblem& problem, Complex multiplier) {
-  BorderedMonodromy bordered(problem, 2);
-  find_plane(bordered, multiplier);
+VectorXcd multiplier_vector(CycleProblem& problem, Complex multiplier) {
+  const bool real = multiplier.imag() == 0;
+  BorderedMonodromy bordered(problem, real ? 1 : 2);
+  find_null_vectors(bordered, real ? std::vector{-multiplier.real(), 1.0}
+                                   : std::vector{std::norm(multiplier), -2 * multiplier.real(), 1.0});
+  if (real) return bordered.v.col(0).cast<Complex>();
   return eigenvector_in(bordered.v, problem.composition().times(bordered.v), multiplier);
 }
 

@@ -21,8 +21,10 @@ Journal::Answer pack(const Journal& journal, const State& s, const std::vector<d
                           static_cast<double>(all.neutral),
                           s.point.step,
                           static_cast<double>(s.point.newton_iterations),
-                          static_cast<double>(all.missed)};
-  for (const auto& v : all.values) out.insert(out.end(), {v.real(), v.imag()});
+                          static_cast<double>(all.missed),
+                          static_cast<double>(all.mesh_waves.size())};
+  for (const auto* list : {&all.values, &all.mesh_waves})
+    for (const auto& v : *list) out.insert(out.end(), {v.real(), v.imag()});
   for (const auto& list : {all.distance, s.point.monitors, warm}) out.insert(out.end(), list.begin(), list.end());
   return {std::move(out), {}, {Journal::keep(&journal, s.tangent.get())}};
 }
@@ -33,9 +35,16 @@ void unpack(const Journal::Answer& answer, State& s, std::vector<double>& warm) 
     const double* begin = std::exchange(at, at + static_cast<std::ptrdiff_t>(n));
     return std::vector<double>(begin, at);
   };
-  const std::vector<double> counts = next(8), values = next(2 * counts[0]);
+  const std::vector<double> counts = next(9);
   s.point.stability = {};
-  for (std::size_t k = 0; k < values.size(); k += 2) s.point.stability.values.emplace_back(values[k], values[k + 1]);
+  const auto complex = [&next](double n) {
+    std::vector<std::complex<double>> out;
+    const std::vector<double> parts = next(2 * n);
+    for (std::size_t k = 0; k < parts.size(); k += 2) out.emplace_back(parts[k], parts[k + 1]);
+    return out;
+  };
+  s.point.stability.values = complex(counts[0]);
+  s.point.stability.mesh_waves = complex(counts[8]);
   s.point.stability.distance = next(counts[1]);
   s.point.monitors = next(counts[2]);
   warm = next(counts[3]);

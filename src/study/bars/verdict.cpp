@@ -112,9 +112,7 @@ std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
                                   : reaches    ? points_[i + 1].stability
                                                : StabilityClass::stable;
       const double end = last ? here.parameter : c.parameter;
-      if (c.fold || next != out.back().stability)
-        out.push_back({c.parameter, end, next, false,
-                       open_at(c) || (c.bifurcation == BranchChange::of_mesh && c.behind > c.before)});
+      if (c.fold || next != out.back().stability) out.push_back({c.parameter, end, next, false, open_at(c)});
     }
   }
   std::optional<StabilityClass> first;
@@ -164,9 +162,7 @@ std::vector<StabilityLimit> BranchVerdict::limits() const {
   std::vector<StabilityLimit> out;
   for (std::size_t k = 0; k < changes_.size(); ++k) {
     const BranchChange& c = changes_[k];
-    if (std::min(c.before, c.behind) > 0 || c.before == c.behind || c.bifurcation == BranchChange::of_mesh ||
-        open_at(c))
-      continue;
+    if (std::min(c.before, c.behind) > 0 || c.before == c.behind || open_at(c)) continue;
     out.push_back({k, c.fold ? turns_below(c) : c.below() == 0});
   }
   std::stable_sort(out.begin(), out.end(), [&](const auto& a, const auto& b) {

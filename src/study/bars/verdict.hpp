@@ -23,8 +23,7 @@ struct BranchChange {
   int before = 0, behind = 0;  ///< unstable values on either side, along the branch
   double slope = 0;            ///< its sign is that of the parameter's change along the branch there
   bool fold = false;           ///< the parameter turns
-  int bifurcation = -1;        ///< its place among the bifurcations of the summary; -1: not asked for; or of_mesh
-  static constexpr int of_mesh = -2;  ///< a wave of a film's mesh: no bifurcation of the machine
+  int bifurcation = -1;        ///< its place among the bifurcations of the summary; -1: not asked for
 
   /// Unstable values on the side of the smaller, and of the larger parameter. No fold.
   [[nodiscard]] int below() const { return slope > 0 ? before : behind; }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "study/bars/mesh_wave.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
 #include "study/cycle/cycle_follower.hpp"
@@ -139,24 +138,6 @@ bool CycleFollower::left_as_doubtful(const io::Bifurcation& b, const solve::Loca
   return true;
 }
 
-// The critical motion of a Neimark-Sacker point is a wave of a film's mesh.
-bool CycleFollower::is_mesh_wave(const solve::LocatedEvent& found, Vec u) {
-  auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
-  if (!cycles || found.event != solve::Event::neimark_sacker || !found.located || !may_have_mesh_waves(*system_))
-    return false;
-  return pieces_->number(piece("wave of the mesh"), [&] {
-    core::Vector row = core::duplicate(u);
-    solve::parameter_row(*problem_, row.get());
-    problem_->linearise(u, row.get());
-    bool wave = false;
-    (void)has_answer([&] {
-      const Eigen::VectorXcd q = solve::neimark_sacker_vector(*cycles, found.critical);
-      if (q.size() == system_->size()) wave = cells_per_wave(*system_, {q.data(), q.data() + q.size()}).has_value();
-    });
-    return wave ? 1.0 : 0.0;
-  }) > 0;
-}
-
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   const bool asked = wanted(found.event, options_.detect);
   const solve::Cycle cycle = problem_->gather(u);
@@ -181,11 +162,6 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     problem_->linearise(u, row.get());
     seed = seed_at(cycle);
     if (options_.follow_flips) seeds_.push_back(*seed);
-  }
-  if (is_mesh_wave(found, u)) {
-    changes_.back().bifurcation = BranchChange::of_mesh;
-    ++events_;
-    return;
   }
   if (found.located) {
     put_bars(b, found, cycle, u);

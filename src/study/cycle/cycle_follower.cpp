@@ -17,8 +17,18 @@
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/solve/bifurcation/normal_form.hpp"
 
 namespace whirl::study {
+
+namespace {
+
+// A multiplier so near to one is that of a self-excited cycle, or of a fold: no wave.
+constexpr double trivial_within = 1e-6;
+// Waves of the mesh whose multipliers are smaller mislead nobody.
+constexpr double lightly_damped = 0.3;
+
+}  // namespace
 
 double distance_of_multiplier(std::complex<double> mu) {
   return std::abs(mu) - 1;
@@ -79,13 +89,41 @@ std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<doubl
   return make_plant(layout(static_cast<std::size_t>(options_.intervals)).space, context_.machine, wanted);
 }
 
-solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem) const {
+solve::Stability cycle_stability(solve::PeriodicProblem& problem, system::Plant& system) {
   auto values = problem.multipliers();
+  std::vector<std::complex<double>> waves;
+  auto* cycles = dynamic_cast<solve::CycleProblem*>(&problem);
+  const bool asked = cycles && may_have_mesh_waves(system);
+  const auto is_wave = [&](std::complex<double> mu) {
+    std::optional<double> cells;
+    (void)has_answer([&] {
+      const Eigen::VectorXcd q = solve::multiplier_vector(*cycles, mu);
+      if (q.size() == system.size()) cells = cells_per_wave(system, {q.data(), q.data() + q.size()});
+    });
+    return cells.has_value();
+  };
+  for (const auto& mu : values)
+    if (asked && mu.imag() >= 0 && std::abs(mu) > lightly_damped && std::abs(mu - 1.0) > trivial_within && is_wave(mu))
+      waves.push_back(mu);
+  std::erase_if(values, [&](auto mu) {
+    return std::ranges::any_of(waves, [&](auto wave) { return mu == wave || mu == std::conj(wave); });
+  });
+  std::erase_if(waves, [](auto mu) { return distance_of_multiplier(mu) <= 0; });
+  solve::Stability out = solve::make_stability(std::move(values), distance_of_multiplier);
+  out.mesh_waves = std::move(waves);
+  return out;
+}
+
+solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem, system::Plant& system) const {
+  solve::Stability out = cycle_stability(problem, system);
   // The trivial multiplier of a self-excited cycle says nothing.
-  if (autonomous())
-    values.erase(std::min_element(values.begin(), values.end(),
-                                  [](auto a, auto b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
-  return solve::make_stability(std::move(values), distance_of_multiplier);
+  if (autonomous() && !out.values.empty()) {
+    const auto apart = [](auto mu) { return std::abs(mu - 1.0); };
+    const auto at = std::ranges::min_element(out.values, {}, apart) - out.values.begin();
+    out.values.erase(out.values.begin() + at);
+    out.distance.erase(out.distance.begin() + at);
+  }
+  return out;
 }
 
 double CycleFollower::room(const solve::Cycle& orbit, system::Plant& system) const {
@@ -144,14 +182,15 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
 
 void CycleFollower::report(const std::string& key, Vec u) {
   io::StudySummary own;
-  record_.report(key, problem_->orbit(u), problem_->orbit_scheme(), *system_, stability_of(*problem_), own);
+  record_.report(key, problem_->orbit(u), problem_->orbit_scheme(), *system_, stability_of(*problem_, *system_), own);
   const solve::Cycle cycle = problem_->gather(u);
   SummaryBars bars(own, law());
   for (const CycleMesh& mesh : meshes())
     bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
       if (const auto other = corrected_on(mesh, cycle))
         record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(),
-                       other->other ? *other->other : *system_, stability_of(*other->problem), there);
+                       other->other ? *other->other : *system_,
+                       stability_of(*other->problem, other->other ? *other->other : *system_), there);
     });
   bars.write(newton_.tolerance);
   for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
@@ -212,7 +251,7 @@ StudyResult CycleFollower::run() {
   put_groups(context_.results.summary(), system_->groups());
   solve::BranchCallbacks callbacks;
   callbacks.cycles = true;
-  callbacks.stability = [this](Vec) { return stability_of(*problem_); };
+  callbacks.stability = [this](Vec) { return stability_of(*problem_, *system_); };
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
   if (auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get()))
@@ -281,12 +320,8 @@ StudyResult CycleFollower::run() {
   if (end.limited && last_)
     put_contact(results.summary(), end.parameter, unit_, end.bracket, law(), contacts_there(*last_, end.parameter));
   BranchVerdict verdict = record_.verdict();
-  MeshWaves waves;
-  for (const BranchChange& c : changes_) {
-    verdict.add(c);
-    if (c.bifurcation == BranchChange::of_mesh) waves.add(c.parameter, {{}});
-  }
-  waves.warn(results.summary(), unit_);
+  for (const BranchChange& c : changes_) verdict.add(c);
+  record_.warn_of_waves(results.summary());
   for (const auto& wanted : options_.at)
     if (const int times = record_.passes(wanted.value / scale_); times > 1) {
       const std::string key = number_text(wanted.value, unit_);

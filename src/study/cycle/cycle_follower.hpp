@@ -77,6 +77,13 @@ struct Parabola {
   double curvature = 0, error = 0;
 };
 
+/// Signed distance of a Floquet multiplier from the unit circle.
+[[nodiscard]] double distance_of_multiplier(std::complex<double> mu);
+/// The Floquet multipliers of a cycle at which `problem` is linearised. Those that belong to waves of a film's mesh are
+/// not among them but for strongly damped ones; Stability::mesh_waves has those outside the unit circle (of pairs the
+/// one with imag > 0). Of problems that do not know their monodromy matrix all stay. Collective.
+[[nodiscard]] solve::Stability cycle_stability(solve::PeriodicProblem& problem, system::Plant& system);
+
 /// The solver's problem, what is recorded of the branch, and how to restart it. Collective throughout.
 class CycleFollower {
 public:
@@ -135,7 +142,6 @@ private:
   void doubt(BranchVerdict& verdict);
   /// Puts a pair that no mesh confirms among the suspicions instead.
   [[nodiscard]] bool left_as_doubtful(const io::Bifurcation& b, const solve::LocatedEvent& found);
-  [[nodiscard]] bool is_mesh_wave(const solve::LocatedEvent& found, Vec u);
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
   /// Which rows of a state this rank stores.
@@ -175,7 +181,8 @@ private:
   void judge_nearest();
   /// Values of a cycle asked for with their bars, under `at.<key>.` in the summary.
   void report(const std::string& key, Vec u);
-  [[nodiscard]] solve::Stability stability_of(solve::PeriodicProblem& problem) const;
+  /// cycle_stability() without the trivial multiplier of a self-excited cycle.
+  [[nodiscard]] solve::Stability stability_of(solve::PeriodicProblem& problem, system::Plant& system) const;
   /// What is known of the errors of films and time steps.
   [[nodiscard]] MeshLaw law() const;
   [[nodiscard]] double order_of_scheme() const;
@@ -250,8 +257,5 @@ private:
   double largest_ = 0;            // its largest norm so far
   bool returned_ = false;
 };
-
-/// Signed distance of a Floquet multiplier from the unit circle.
-[[nodiscard]] double distance_of_multiplier(std::complex<double> mu);
 
 }  // namespace whirl::study

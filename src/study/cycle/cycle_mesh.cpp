@@ -139,7 +139,8 @@ void CycleFollower::judge_multiplier(const Watched& at) {
         fmt::format("multiplier {} on mesh {} {:.3f}", at.index, static_cast<int>(mesh.axis), mesh.spacing), [&] {
           return answer_of([&] {
             const auto other = corrected_on(mesh, cycle);
-            return other ? std::vector<double>{leading(stability_of(*other->problem))} : std::vector<double>{};
+            if (!other) return std::vector<double>{};
+            return std::vector{leading(stability_of(*other->problem, other->other ? *other->other : *system_))};
           });
         });
     bars.add(mesh.axis, mesh.spacing, there);

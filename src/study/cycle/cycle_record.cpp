@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "study/bars/film_limit.hpp"
+#include "study/bars/mesh_wave.hpp"
 #include "study/state_rows.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
@@ -66,6 +67,7 @@ std::vector<io::Table::Column> columns(const system::ShownPlaces& places, const 
       {"period", "s", "period of the cycle"},
       {"stable", "1", "1 if no multiplier is outside the unit circle"},
       {"unstable_count", "1", "multipliers outside the unit circle"},
+      {"mesh_waves", "1", "of a film's mesh that grow, pairs of multipliers outside the unit circle that are left out"},
       {"step", unit, "arclength from the previous point"},
       {"newton_iterations", "1", "of the accepted step"},
       {"intervals", "1", "of the time mesh"},
@@ -151,6 +153,7 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
                  {cycle.period},
                  {unstable == 0 ? 1.0 : 0.0},
                  {static_cast<double>(unstable)},
+                 {static_cast<double>(point.stability.mesh_waves.size())},
                  {point.step},
                  {static_cast<double>(point.newton_iterations)},
                  {static_cast<double>(cycle.intervals())},
@@ -179,8 +182,17 @@ BranchVerdict CycleRecord::verdict() const {
     const int unstable = static_cast<int>(table_.column("unstable_count")[k]);
     verdict.add(table_.column("parameter")[k], unstable > 0 ? StabilityClass::unstable : StabilityClass::stable,
                 unstable);
+    if (table_.column("mesh_waves")[k] > 0) verdict.unresolved(static_cast<int>(k));
   }
   return verdict;
+}
+
+void CycleRecord::warn_of_waves(io::StudySummary& summary) const {
+  MeshWaves waves;
+  for (std::size_t k = 0; k < table_.rows(); ++k)
+    waves.add(table_.column("parameter")[k],
+              std::vector<std::complex<double>>(static_cast<std::size_t>(table_.column("mesh_waves")[k])));
+  waves.warn(summary, unit_);
 }
 
 bool CycleRecord::one_sided() const {

@@ -39,6 +39,8 @@ public:
   [[nodiscard]] bool one_sided() const;
   /// How often the branch passes a value of the parameter, in the unit of the table.
   [[nodiscard]] int passes(double parameter) const;
+  /// Says where waves of a film's mesh grow, which are left out, if any do.
+  void warn_of_waves(io::StudySummary& summary) const;
   /// The points so far, by their stability.
   [[nodiscard]] BranchVerdict verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.

@@ -42,7 +42,7 @@ void LocusFollower::put_curve(const std::vector<Row>& rows, const std::vector<Ro
     table.append({deck::from_si(row.first, first), there, row.period, row.angle, row.amplitude,
                   static_cast<double>(row.others_unstable), bars[k].first / deck::number_to_si(1, first),
                   bars[k].second / deck::number_to_si(1, second), bars[k].normal, bars[k].computed ? 1.0 : 0.0});
-    if (row.mesh_wave > 0) waves.add(there, {{0, row.mesh_wave}});
+    if (row.mesh_wave != 0) waves.add(there, {{0, std::max(0.0, row.mesh_wave)}});
     if (row.others_unstable == 0) continue;
     ++marked;
     low = std::min(low, there);

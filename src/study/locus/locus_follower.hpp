@@ -38,6 +38,7 @@ struct Row {
   double first = 0, second = 0, period = 0, angle = 0, amplitude = 0;
   int others_unstable = 0;
   double mesh_wave = 0;  ///< frequency of a growing wave of a film's mesh, which is left out; zero: none
+  static constexpr double unknown_frequency = -1;  ///< of a wave that multipliers show
 };
 
 /// The bar of a point of a curve, not a number where it is unknown.

@@ -36,7 +36,8 @@ void LocusFollower::put_others(Vec whole, Row& at) {
     // At a fold the matrix with the parameter fixed is singular.
     solve::weighted_row(*cycles_, solve::any_tangent(*cycles_, u.get()).get(), row.get());
     cycles_->linearise(u.get(), row.get());
-    all = solve::make_stability(cycles_->multipliers(), distance_of_multiplier);
+    all = cycle_stability(*cycles_, *system_);
+    if (!all.mesh_waves.empty()) at.mesh_wave = Row::unknown_frequency;
     const double angle = row_at(whole, 0).angle;
     critical.push_back(std::polar(1.0, angle));
     if (seed_.event == solve::Event::neimark_sacker) critical.push_back(std::polar(1.0, -angle));

@@ -29,9 +29,9 @@ using MotionSize = std::function<double(const Eigen::VectorXd& v)>;
 [[nodiscard]] double neimark_sacker_coefficient(CycleProblem& problem, Vec u, std::complex<double> multiplier,
                                                 double step = 1, const MotionSize& size = largest_state);
 
-/// The start [n] of the critical motion of a cycle at such a point, in scaled states: M q = multiplier q. `problem` is
-/// linearised there. Throws core::NotConverged. Collective.
-[[nodiscard]] Eigen::VectorXcd neimark_sacker_vector(CycleProblem& problem, std::complex<double> multiplier);
+/// The start [n] of the motion that belongs to a multiplier of a cycle, in scaled states: M q = multiplier q. `problem`
+/// is linearised there. Throws core::NotConverged. Collective.
+[[nodiscard]] Eigen::VectorXcd multiplier_vector(CycleProblem& problem, std::complex<double> multiplier);
 
 /// w . (D^3 P(v, v, v) + 3 D^2 P(v, h))/6, (I - M) h = D^2 P(v, v), of the map P over one period of a forced cycle with
 /// a multiplier of -1, M v = -v and M^T w = -w. It has no pole where w . v = 0 (resonance 1:2), but one where +1 is a
