@@ -140,6 +140,7 @@ private:
     if (at.kind == Node::Kind::scalar)
       throw InputError(fmt::format("'{}' is a value and has no '{}'", walked(), steps_[i]));
     for (const std::string& step : alternatives(steps_[i])) {
+      if (at.kind != Node::Kind::none) begun_.clear(), new_item_ = false;
       if (step.find('*') != std::string::npos)
         each(at, step, i);
       else if (at.kind == Node::Kind::list)
@@ -180,7 +181,7 @@ private:
   }
 
   // Index of a key, which is begun if there is none.
-  [[nodiscard]] std::size_t entry(Node& at, const std::string& step, std::size_t i) const {
+  [[nodiscard]] std::size_t entry(Node& at, const std::string& step, std::size_t i) {
     if (at.kind == Node::Kind::none) at.kind = Node::Kind::map;
     if (const Node* found = at.find(step)) return static_cast<std::size_t>(found - at.items.data());
     if (Node* found = other_word(at, step)) return static_cast<std::size_t>(found - at.items.data());
@@ -199,6 +200,14 @@ private:
     if (const std::string hint = hint_at(step, i); !hint.empty())
       throw InputError(fmt::format("there is no '{}'{}", whole_path(step), hint));
     require_key(step);
+    if (i + 1 < steps_.size()) {
+      const bool item = of_a_kind && path_.size() == 1;
+      std::vector<std::string> names;
+      for (const Node& n : at.items) names.push_back(n.key);
+      if (begun_.empty())
+        begun_ = fmt::format("'{}'{}", whole_path(step), item ? did_you_mean_one_of(step, names) : std::string());
+      new_item_ = new_item_ || item;
+    }
     Node& next = at.set(step, Node{});
     next.place = next.key_place = edit_.place;
     return at.items.size() - 1;
@@ -233,6 +242,12 @@ private:
     const bool scalar = edit_.value.kind == Node::Kind::scalar;
     const Leaf leaf = known_leaf();
     Node now = at.kind == Node::Kind::none ? leaf.preset : at;
+    // Where the path leads into what the deck does not have, the value is not what is missing.
+    // Defaults stand for an option; an item with a name of its own, as a bearing, has none.
+    if (scalar && !edit_.append && !begun_.empty() && (new_item_ || now.kind == Node::Kind::none) &&
+        written_as(edit_.value.text).as != Written::As::value)
+      throw InputError(
+          fmt::format("there is no {}: '{}' changes a value, and there is none", begun_, edit_.value.text));
     Change change{walked(), to_line(now), {}};
     Node after = edit_.value;
     if (edit_.value.kind == Node::Kind::none && parent.kind == Node::Kind::map && !edit_.append) {
@@ -319,6 +334,8 @@ private:
   const Node* root_ = nullptr;
   std::vector<std::string> steps_;
   std::vector<std::string> path_;  // up to here, without wildcards
+  std::string begun_;              // the first key on the way that the deck does not have, with what it has beside it
+  bool new_item_ = false;          // that is an item of a list of names: a bearing, an element
   std::vector<Change> changes_;
 };
 
@@ -353,6 +370,11 @@ Edit parse_edit(const std::string& argument, std::string_view cited) {
   const bool append = argument[equals - 1] == '+';
   Edit edit{argument.substr(0, equals - (append ? 1 : 0)), append, {}, place};
   if (edit.path.empty()) fail("expected PATH+=VALUE");
+  // What other programs take for a factor, YAML takes for a name.
+  std::string_view text = std::string_view(argument).substr(equals + 1);
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  if (text.size() > 1 && (text[0] == '*' || text[0] == '/') && (text[1] == '.' || (text[1] >= '0' && text[1] <= '9')))
+    fail(fmt::format("'{}' is no value: a factor is written x2, x0.5 or +20 %", text));
   try {
     edit.value = parse_yaml(std::string_view(argument).substr(equals + 1), "value");
   } catch (const InputError& e) {

@@ -230,6 +230,10 @@ TEST(Edit, ErrorsCiteTheArgument) {
             "--set bearings.B1.geometry.clearance=by -180 um: 'clearance' must be positive, not 0 um");
   EXPECT_EQ(refusal("bearings.B1.mass=x2"),
             "--set bearings.B1.mass=x2: 'bearings.B1.mass' has no value to start from: the deck does not give it");
+  // Of what is not there nothing is changed: a new one is not begun by a factor.
+  EXPECT_NE(refusal("bearings.Q.mass=x2").find("there is no 'bearings.Q'; there are "), std::string::npos)
+      << refusal("bearings.Q.mass=x2");
+  EXPECT_NE(refusal("bearings.B1.mass=*2").find("'*2' is no value: a factor is written x2"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.elevation=by 5").find("has no unit: expected a length"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.elevation=+5 kg").find("expected a length"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.elevation=x5 um").find("a factor is a bare number"), std::string::npos);
