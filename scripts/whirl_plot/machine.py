@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 
-from .style import BAD, COLOURS, GREY, INK, save
+from .style import BAD, COLOURS, GREY, INK, save, span_of
 from .units import number, quantity
 
 STEEL, ADDED = "#d5dbe2", "#aab4bf"
@@ -156,7 +156,7 @@ def draw_shaft(results, deck, segments):
         if at is not None:
             axis.annotate("", (at, 1.02 * high), (at, 1.38 * high), arrowprops={"arrowstyle": "-|>", "color": BAD, "linewidth": 1.0}, zorder=7)
             axis.annotate(f"{node}", (at, 1.38 * high), ha="center", va="bottom", fontsize=7, color=BAD)
-    axis.set_xlim(z[0] - 0.02 * z[-1], 1.02 * z[-1])
+    axis.set_xlim(*span_of(z[0] - 0.02 * z[-1], 1.02 * z[-1]))
     axis.set_ylim(-2.0 * high, 1.85 * high)
     axis.set_aspect(stretch)
     axis.set_xlabel("z [m]")

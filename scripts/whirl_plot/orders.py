@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
-from .style import COLOURS, GREY, INK, ROTATION, save, speed_axis
+from .style import COLOURS, GREY, INK, ROTATION, save, span_of, speed_axis
 from .units import scale_of
 
 MOST = 6  # places on one picture
@@ -51,7 +51,7 @@ def draw_waterfall(study):
             axis.plot(hertz[k, 1:], line, color=INK, linewidth=0.6, zorder=len(at) - k)
         rays = [np.column_stack([o * speed / (2 * np.pi), at]) for o in range(1, int(order[-1]) + 1)]
         axis.add_collection(LineCollection(rays, colors=COLOURS[0], linewidths=0.7, alpha=0.6, zorder=2 * len(at)))
-        axis.set_xlim(0, hertz[:, -1].max())
+        axis.set_xlim(*span_of(0, hertz[:, -1].max()))
         axis.set_xlabel("frequency [Hz]")
         axis.set_title(f"{name}, highest {all_rows.max() * factor:.3g} {unit}")
     axes[0, 0].set_ylabel(label)

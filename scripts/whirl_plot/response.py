@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from .margins import operating_in
-from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, runs, save, speed_axis
+from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, runs, save, span_of, speed_axis
 
 NOTE = ("linear response, amplitudes 0-peak; lag behind the shaft angle: x = |X| cos(angle \u2212 lag), the heavy side points along x "
         "at angle 0 and phase 0")
@@ -111,7 +111,7 @@ def draw_group(study, group, names, what, speed, speed_label):
         for column, k in enumerate(part):
             draw_place(study, axes[0, column], axes[1, column], speed, data, k, scale, unit, speed_label.split("[")[1].rstrip("]"), names[k], validity)
             axes[1, column].set_xlabel(speed_label)
-            axes[1, column].set_xlim(speed[0], speed[-1])
+            axes[1, column].set_xlim(*span_of(speed[0], speed[-1]))
         for axis in axes.ravel():
             draw_operating(axis, operating, speed)
             validity.shade(axis, speed)

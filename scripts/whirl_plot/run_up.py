@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import GREY, grid_of, length_unit, save
+from .style import GREY, grid_of, length_unit, save, span_of
 
 RESPONSE_COLUMN = {"bearings": "bearings/semi_major", "node": "response/semi_major"}
 
@@ -67,7 +67,7 @@ def draw_together(results):
                     axis.plot(speed[:free], amplitude[:free] * scale, color=study.colour, linewidth=0.8, alpha=0.35)
                     started = started or free > 1
         ends = np.concatenate([study.get("run_up/speed") for study in studies])
-        axis.set_xlim(ends.min(), ends.max())
+        axis.set_xlim(*span_of(ends.min(), ends.max()))
         axis.set_ylim(bottom=0)
         axis.set_title(title)
         axis.set_xlabel(f"speed [{unit}]")

@@ -6,7 +6,7 @@ import numpy as np
 
 from .campbell import LINES, OVERDAMPED, with_either
 from .curves import along_shaft
-from .style import BAD, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, least_span, length_unit, save, speed_axis
+from .style import BAD, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, least_span, length_unit, save, span_of, speed_axis
 
 
 def bearing_places(study, z):
@@ -173,7 +173,7 @@ def draw_flat(study, speed, z, shapes, suffix):
         axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8.5)
         axis.set_ylim(-1.08, 1.08)
         axis.set_yticks([-1, 0, 1])
-        axis.set_xlim(z[0], z[-1])
+        axis.set_xlim(*span_of(z[0], z[-1]))
     for column in range(grid.shape[1]):
         visible = [a for a in grid[:, column] if a.get_visible()]
         visible[-1].set_xlabel("z [m]")
@@ -212,7 +212,7 @@ def draw_in_space(study, speed, z, shapes, suffix):
         axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8, y=0.98)
         axis.set_box_aspect((3.0, 1, 1), zoom=1.3)
         axis.view_init(18, -62)
-        axis.set(xlim=(z[0], z[-1]), ylim=(-1, 1), zlim=(-1, 1), yticks=[], zticks=[])
+        axis.set(xlim=span_of(z[0], z[-1]), ylim=(-1, 1), zlim=(-1, 1), yticks=[], zticks=[])
         axis.tick_params(axis="x", labelsize=6.5, pad=-3)
         axis.grid(False)
         for pane in (axis.xaxis, axis.yaxis, axis.zaxis):

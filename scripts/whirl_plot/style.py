@@ -70,6 +70,11 @@ def speed_axis(unit):
     return 1, "speed [rad/s]", 1, "rad/s"
 
 
+def span_of(low, high):
+    """Limits of an axis; a little apart where all is at one place."""
+    return (low, high) if high > low else (low - (abs(low) or 1) / 20, low + (abs(low) or 1) / 20)
+
+
 def least_span(axis, reference, share=0.02):
     """Widens a vertical axis that shows less than `share` of `reference`: rounding is no shape."""
     low, high = axis.get_ylim()

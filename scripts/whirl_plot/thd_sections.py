@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import INK, length_unit, save
+from .style import INK, length_unit, save, span_of
 from .thd_cuts import at_speed, axial, edge, fill_film, parts, regions_in_words
 from .thd_film import LABEL, Film, ring, stretches
 
@@ -49,7 +49,7 @@ def of_film(figure, axis, film, region, at, thickness, values, limits, scale, or
         edge(axis, at, height)
     if len(orifices):  # an empty line that is not clipped has no extent, and the layout collapses
         axis.plot(orifices, np.full(len(orifices), -0.05 * top), "^", color=INK, markersize=6, clip_on=False, label="orifice")
-    axis.set_xlim(at[0], at[-1])
+    axis.set_xlim(*span_of(at[0], at[-1]))
     axis.set_ylim(-0.1 * top, top)
     axis.grid(False)
     axis.text(0.99, 0.97, "journal", transform=axis.transAxes, ha="right", va="top", fontsize=8, color=INK)

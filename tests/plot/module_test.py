@@ -262,6 +262,9 @@ def facts():
     assert list(at) == [0, 1, 2, 2.2, 3, 4] and list(np.nonzero(border)[0]) == [3] and len(sense) == 6, (at, border)
     assert [campbell.colour_of(d) == campbell.BAD for d in campbell.between(damped, border)] == [False, False, False, True, False]
     assert not any(d < 0 for d in campbell.between(track[2], np.zeros(5, bool)))
+    # Limits at one place would be warned of on the screen.
+    from whirl_plot.style import span_of
+    assert span_of(1.0, 2.0) == (1.0, 2.0) and all(a < b for a, b in (span_of(0.0, 0.0), span_of(-3.0, -3.0), span_of(2.0, 2.0)))
     from whirl_plot.margins import margin_cells
     assert margin_cells((0.1, 0.002), (0.12, None), "too near") == ["10.00 \u00b1 0.20", "12", "no"]
     assert margin_cells((0.2, None), (0.0, None), "damped, not critical") == ["20", "none", "damped"]
