@@ -75,6 +75,33 @@ TEST(HiddenResonances, AreFoundBetweenSpeedsFarApart) {
   }
 }
 
+// A modulus that nears the speed, is below it from 230 to 430 rad/s and leaves it again; and growth over the same
+// speeds. The known ones lie outside.
+TEST(HiddenResonances, AreFoundWhereAModulusComesAndGoes) {
+  const auto bend = [](double s) { return (s - 230) * (s - 430); };
+  const auto at = [&](double s) {
+    std::vector<Complex> out;
+    add(out, s + 1e-3 * bend(s), 1e-2);
+    add(out, 1e4, 1e-6 * bend(s));
+    return out;
+  };
+  std::vector<double> computed{100, 200, 450, 600};
+  Spectra known;
+  for (const double s : computed) known[s] = at(s);
+  EXPECT_EQ(where_growth_may_hide(known, {1e9, 100}).size(), 1U);
+  const double there = where_growth_may_hide(known, {1e9, 100})[0];
+  EXPECT_LT(bend(there), 0);
+  EXPECT_TRUE(where_growth_may_hide(known, {50, 100}).empty());
+  const auto [found, gave_up] =
+      hidden_resonances(known, computed, {}, {1e9, 100}, [&](const std::vector<double>& more) {
+        for (const double s : more) known[s] = at(s);
+      });
+  EXPECT_FALSE(gave_up);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0].speed, 230, 0.3);
+  EXPECT_NEAR(found[1].speed, 430, 0.5);
+}
+
 TEST(HiddenResonances, AreNoneWhereTheResponseShowsThem) {
   Search search;
   // Between 2900 and 3100 rad/s stands the undamped one.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "study/linear/dip.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
@@ -84,19 +85,6 @@ bool hides_crossing(const Station& first, const Station& second) {
   const bool reaches = std::ranges::any_of(
       first.modes, [&](const ShaftMode& m) { return beyond(Border::critical, m.lambda, first.speed) > 0; });
   return (begin > 0 && alone(first, second, false) > 0) || (reaches && begin > alone(first, second, true));
-}
-
-// The speed at which the parabola through the distances of a track from a border at three speeds has its extreme, if
-// it has crossed the border there, which none of the three has.
-std::optional<double> dip_of(const std::array<double, 3>& s, const std::array<double, 3>& f) {
-  if (!(f[0] * f[1] > 0 && f[1] * f[2] > 0)) return {};
-  if (std::abs(f[1]) > std::min(std::abs(f[0]), std::abs(f[2]))) return {};
-  const double left = (f[1] - f[0]) / (s[1] - s[0]), right = (f[2] - f[1]) / (s[2] - s[1]),
-               bend = (right - left) / (s[2] - s[0]);
-  const double slope = left + bend * (s[1] - s[0]), at = s[1] - slope / (2 * bend);
-  const double there = f[1] - slope * slope / (4 * bend);
-  if (!(there * f[1] < 0) || at <= s[0] || at >= s[2]) return {};
-  return at;
 }
 
 // Speeds at which borders may be crossed unseen: between two stations, and where a track nears a border and leaves it

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "study/bars/unresolved.hpp"
+#include "study/linear/dip.hpp"
 #include "study/linear/response_peaks.hpp"
 
 namespace whirl::study {
@@ -16,6 +17,7 @@ using Complex = std::complex<double>;
 constexpr double near_enough = 1.5;   // widths: a resonance between two speeds is seen with 0.8 of its height
 constexpr double settled_part = 0.1;  // of the width
 constexpr double top_within = 2;      // widths from a resonance to its peak
+constexpr int most_looks = 4;         // at a modulus between three speeds
 constexpr double meets_within = 2;    // widths from the modulus to the speed
 
 double width_of(Complex lambda, double speed, double least) {
@@ -98,6 +100,22 @@ bool is_one_of(const std::vector<Resonance>& all, const Resonance& r) {
   });
 }
 
+// Places between three neighbouring spectra at which f of a vibration may cross zero and return.
+template <class F>
+std::vector<double> dips_of(const Spectra& spectra, const ResonanceSearch& search, const F& f) {
+  std::vector<double> out;
+  if (spectra.size() < 3) return out;
+  for (auto a = spectra.begin(), b = std::next(a), c = std::next(b); c != spectra.end() && b->first < search.limit;
+       ++a, ++b, ++c)
+    for (std::size_t m = 0; m < std::min({a->second.size(), b->second.size(), c->second.size()}); ++m) {
+      if (!(b->second[m].imag() > 0) || !has_peak(b->second[m]) || std::abs(b->second[m]) > search.limit) continue;
+      const auto dip = dip_of({a->first, b->first, c->first},
+                              {f(a->second[m], a->first), f(b->second[m], b->first), f(c->second[m], c->first)});
+      if (dip) out.push_back(*dip);
+    }
+  return out;
+}
+
 }  // namespace
 
 ResonanceSearch search_of(const rotor::Options& rotor, std::size_t most) {
@@ -146,6 +164,12 @@ bool resonance_near(const std::vector<Complex>& eigenvalues, double speed, doubl
   });
 }
 
+std::vector<double> where_growth_may_hide(const Spectra& known, const ResonanceSearch& search) {
+  constexpr double rounding = 1e-8;
+  return dips_of(known, search,
+                 [](Complex v, double) { return std::abs(v.real()) > rounding * std::abs(v) ? v.real() : 0; });
+}
+
 std::vector<double> around(const Resonance& r) {
   return {r.speed - 1.1 * r.width, r.speed + 0.1 * r.width, r.speed + 1.2 * r.width};
 }
@@ -171,6 +195,10 @@ HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& co
     }
     std::vector<double> speeds;
     for (const auto& [speed, values] : known) speeds.push_back(speed);
+    // A few looks tell whether a modulus that nears the speed meets it.
+    if (pass < most_looks && ask.size() < most)
+      for (const double dip : dips_of(known, search, [](Complex v, double speed) { return std::abs(v) - speed; }))
+        if (ask.size() < most) ask.push_back(dip);
     ask = worth_asking(std::move(ask), speeds);
     if (ask.empty()) break;
     if (ask.size() > most) {

@@ -64,10 +64,10 @@ inline constexpr double no_peak = 0.7071;
 /// Resonances between known speeds that do not show in a response at the rising speeds `computed`, by rising speed.
 /// Two neighbours of `known` enclose as many as the number of eigenvalues with abs(lambda) below the speed differs by:
 /// eigenvalues in the order of their moduli are continuous over the speed, whatever they do. A mode that comes and goes
-/// between two known speeds is not seen. Each resonance is enclosed further, by secants and halves, to a tenth of its
-/// width, with the eigenvalues that `more` puts into `known`, unless it shows: where `computed` stand near enough, or
-/// at one of `tops`, speeds among `known`. Those beyond the limit are left out, and jumps of the spectrum, where no
-/// modulus meets the speed.
+/// between two known speeds is seen by the parabola through three of them. Each resonance is enclosed further, by
+/// secants and halves, to a tenth of its width, with the eigenvalues that `more` puts into `known`, unless it shows:
+/// where `computed` stand near enough, or at one of `tops`, speeds among `known`. Those beyond the limit are left out,
+/// and jumps of the spectrum, where no modulus meets the speed.
 ///
 /// Cost: about four spectra a resonance.
 struct HiddenResonances {
@@ -77,5 +77,9 @@ struct HiddenResonances {
 [[nodiscard]] HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& computed,
                                                  const std::vector<double>& tops, const ResonanceSearch& search,
                                                  const std::function<void(const std::vector<double>& speeds)>& more);
+
+/// Speeds at which, by parabolas through three neighbours, a vibration grows that falls away at all of them; `known` in
+/// the order of their moduli, as hidden_resonances() leaves them.
+[[nodiscard]] std::vector<double> where_growth_may_hide(const Spectra& known, const ResonanceSearch& search);
 
 }  // namespace whirl::study

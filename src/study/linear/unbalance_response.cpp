@@ -244,6 +244,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
     if (operating_speed) all.push_back(operating_speed->value);
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (const double at : where_growth_may_hide(spectra, search))
+      if (const auto next = std::ranges::lower_bound(all, at); next != all.end()) counted.push_back(*next);
     stable = StableSpeeds(std::move(all), counted, [&](const std::vector<double>& speeds) {
       look(speeds);
       std::vector<int> out;
