@@ -124,6 +124,15 @@ TEST(ModeStations, ABorderThatCannotBeFollowedHasABar) {
   EXPECT_EQ(jump.left, 0);
 }
 
+// Frequencies that scatter by 1e-5, as those about equilibria of a tolerance do.
+TEST(ModeStations, ACriticalSpeedIsFoundAsWellAsFrequenciesAreKnown) {
+  const auto noisy = [](double s) { return std::vector{circle(400 - 0.3 * s + 3e-3 * std::sin(1e7 * s), -1, 0.3)}; };
+  Crossing c{Border::critical, 100, 500, 270, -250, noisy(500)[0], 1, false, noisy(100)[0]};
+  const CrossingPoint found = locate(c, noisy);
+  EXPECT_NEAR(found.speed, 400 / 1.3, 5e-3);
+  EXPECT_EQ(found.left, 0);
+}
+
 TEST(ModeStations, OneCriticalSpeedFoundTwiceIsOne) {
   std::vector<Station> stations{of(100, {circle(150, -1, 0), circle(160, -1, 1.5)}, true),
                                 of(200, {circle(150, -1, 0), circle(160, -1, 1.5)}, true)};

@@ -228,10 +228,14 @@ std::optional<CrossingPoint> located_by(ShaftMode guide, double known, const Cro
     lost = found == pairs.before.end() ? lost + 1 : 0;
     if (lost > 0) continue;
     guide = there[static_cast<std::size_t>(found - pairs.before.begin())];
+    const double step = std::abs(at - known);
     known = at;
     const double here = beyond(c.border, guide.lambda, at);
     const double scale = c.border == Border::critical ? at : std::abs(guide.lambda);
     if (std::abs(here) < (c.border == Border::critical ? 1e-7 : 1e-10) * scale)
+      return CrossingPoint{at, guide.lambda, guide.both()};
+    // Equilibria are known to a tolerance, which may leave more than that.
+    if (!may_jump && step < 1e-6 * at && std::abs(here) < 1e-4 * scale)
       return CrossingPoint{at, guide.lambda, guide.both()};
     // An end that stays is halved (Illinois).
     const std::size_t moves = here * c.f0 > 0 ? 0 : 1;
