@@ -26,10 +26,14 @@ public:
   [[nodiscard]] const std::vector<double>& hub_rate();
 
 private:
+  /// Norm of F_0 at the place.
+  [[nodiscard]] double left_over();
+
   RotorSystem& system_;
   std::unique_ptr<RotorSystem> without_;
   core::Vector x_;
   bool near_ = false, found_ = false;
+  double left_ = 0;  ///< of F_0 where the place was found; of linear machines
   std::vector<double> rate_;
 };
 

@@ -215,6 +215,24 @@ TEST(Elements, DerivativesAreExact) {
   }
 }
 
+// The place of rest is kept where supports do not know the speed, and found anew where they do.
+TEST(Elements, RestOnLinearSupportsFollowsTheSpeed) {
+  for (const bool by_speed : {false, true}) {
+    system::Machine m = in_films();
+    film::Linear springs{{2e8, 0, 0, 3e8}, {1e4, 0, 0, 1e4}};
+    if (by_speed) springs.table = {{.speed = 0.5 * speed, .k_yy = 0}, {.speed = 2 * speed, .k_yy = 5e8}};
+    for (system::Bearing& b : m.bearings) b.film = springs;
+    m.elements = {seal_of({}, 3)};
+    m.elements[0].stiffness = {1e8, 0, 0, 1e8};
+    system::RotorSystem moved(MPI_COMM_WORLD, system::train_of(m), speed),
+        fresh(MPI_COMM_WORLD, system::train_of(m), 1.3 * speed);
+    const core::Vector x = wavy(moved, 0.02);
+    (void)rows_of(moved, x, x);
+    moved.set_parameter(1.3 * speed);
+    expect_same(rows_of(moved, x, x), rows_of(fresh, x, x), 1e-12);
+  }
+}
+
 // On one rank and on all.
 TEST(Elements, RanksAgree) {
   system::Machine m = in_films();
