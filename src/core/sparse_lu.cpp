@@ -1,6 +1,5 @@
 #include "whirl/core/sparse_lu.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
@@ -15,15 +14,6 @@ namespace {
 constexpr double digits_lost = 1e-12;
 
 }  // namespace
-
-struct SparseLu::Pivoted {
-  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
-};
-
-SparseLu::SparseLu() = default;
-SparseLu::SparseLu(SparseLu&&) noexcept = default;
-SparseLu& SparseLu::operator=(SparseLu&&) noexcept = default;
-SparseLu::~SparseLu() = default;
 
 void SparseLu::set_pattern(const ByRows& rows) {
   const auto n = static_cast<PetscInt>(rows.rows());
@@ -80,12 +70,11 @@ bool SparseLu::without_pivots(const Matrix& a) {
 bool SparseLu::compute(const Matrix& a) {
   if (!pivoted_) {
     if (without_pivots(a)) return true;
-    pivoted_ = std::make_unique<Pivoted>();
+    pivoted_.emplace();
     matrix_.reset();
     factors_.reset();
   }
-  pivoted_->lu.compute(a);
-  return pivoted_->lu.info() == Eigen::Success;
+  return pivoted_->compute(a);
 }
 
 void SparseLu::apply(PetscErrorCode (*by)(Mat, Vec, Vec), const double* y, double* x) const {
@@ -97,9 +86,8 @@ void SparseLu::apply(PetscErrorCode (*by)(Mat, Vec, Vec), const double* y, doubl
 }
 
 void SparseLu::solve(const double* y, double* x) const {
-  if (!pivoted_) return apply(MatSolve, y, x);
-  const Index n = pivoted_->lu.rows();
-  Eigen::Map<VectorXd>(x, n) = pivoted_->lu.solve(Eigen::Map<const VectorXd>(y, n));
+  if (pivoted_) return pivoted_->solve(y, x, 1);
+  apply(MatSolve, y, x);
 }
 
 MatrixXd SparseLu::solve(const MatrixXd& y) const {
@@ -109,7 +97,7 @@ MatrixXd SparseLu::solve(const MatrixXd& y) const {
 }
 
 MatrixXd SparseLu::solve_transposed(const MatrixXd& y) const {
-  if (pivoted_) return pivoted_->lu.transpose().solve(y);
+  if (pivoted_) return pivoted_->solve_transposed(y);
   MatrixXd x(y.rows(), y.cols());
   for (Index k = 0; k < y.cols(); ++k) apply(MatSolveTranspose, y.col(k).data(), x.col(k).data());
   return x;

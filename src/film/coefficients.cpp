@@ -1,14 +1,14 @@
 #include "whirl/film/coefficients.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <utility>
 
 #include "film/lent_lu.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/film/film_matrix.hpp"
 
 namespace whirl::film {
@@ -129,7 +129,7 @@ Eigen::MatrixXcd FrequencyCoefficients::by_basis(Index blocks, double omega) con
   MatrixXcd a = MatrixXcd::Identity(k, k) + iw * s.hessenberg.topLeftCorner(k, k).cast<Complex>();
   MatrixXcd b = MatrixXcd::Zero(k, p);
   b.topRows(p) = s.start.cast<Complex>();
-  const MatrixXcd y = a.partialPivLu().solve(b);
+  const MatrixXcd y = core::DenseLu<Complex>(a).solve(b);
   return y.transpose() * (s.by_position.topRows(k).cast<Complex>() + iw * s.by_velocity.topRows(k).cast<Complex>());
 }
 
@@ -182,9 +182,8 @@ Eigen::MatrixXcd FrequencyCoefficients::by_factors(double omega) const {
   const Complex iw(0.0, omega);
   const Share& all = film_.whole();
   FilmMatrix<Complex> matrix(all, all.d_states, &all.d_rates);
-  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu;
-  lu.compute(matrix.filled(at_.d_states, at_.d_rates, 1.0, iw));
-  if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+  const core::PivotedLu<Complex> lu(matrix.filled(at_.d_states, at_.d_rates, 1.0, iw));
+  if (!lu.regular()) throw core::NotConverged("the film by itself is singular");
   MatrixXcd moved(n, p);
   moved.real() = columns(at_.d_position, n, p);
   moved.imag() = omega * columns(at_.d_velocity, n, p);

@@ -1,6 +1,6 @@
 #include "film/column_chain.hpp"
+#include "whirl/core/dense_lu.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 namespace whirl::film {
@@ -18,7 +18,7 @@ void invert(Matrix& a) {
   Matrix rows, columns;
   for (Index k = 0; k < n; k += block) {
     const Index b = std::min(block, n - k);
-    const Matrix pivot = a.block(k, k, b, b).inverse();
+    const Matrix pivot = core::DenseLu<typename Matrix::Scalar>(a.block(k, k, b, b)).inverse();
     rows.noalias() = pivot * a.middleRows(k, b);
     rows.middleCols(k, b) = pivot;
     columns = a.middleCols(k, b);
@@ -96,11 +96,19 @@ typename ColumnChain<Scalar>::Matrix ColumnChain<Scalar>::times(bool transposed,
   const bool all = static_cast<Index>(v.dense.size()) == b.rows();
   if (all && !transposed) return v.values * b;
   Matrix out = v.diagonal.asDiagonal() * b;
-  if (v.dense.empty()) return out;
-  if (!transposed)
-    out.noalias() += v.values * b(v.dense, Eigen::all);
-  else
-    out(v.dense, Eigen::all) += v.values.transpose() * b;
+  const auto n_dense = static_cast<Index>(v.dense.size());
+  if (n_dense == 0) return out;
+  Matrix part(n_dense, b.cols());
+  if (transposed) part.noalias() = v.values.transpose() * b;
+  for (Index c = 0; c < b.cols(); ++c)
+    for (Index p = 0; p < n_dense; ++p) {
+      const int row = v.dense[static_cast<std::size_t>(p)];
+      if (transposed)
+        out(row, c) += part(p, c);
+      else
+        part(p, c) = b(row, c);
+    }
+  if (!transposed) out.noalias() += v.values * part;
   return out;
 }
 

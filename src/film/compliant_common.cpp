@@ -1,11 +1,11 @@
 // What all compliant films share.
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "film/compliant.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 
 namespace whirl::film {
 namespace {
@@ -94,8 +94,8 @@ std::vector<double> CompliantModel::settled_rates(const JournalMotion& motion, s
   for_entries(whole(), whole().d_rates, at.d_rates, [&](int i, int j, double v) { entries.emplace_back(i, j, v); });
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
-  if (lu.info() != Eigen::Success) throw core::NotConverged("the rates of the film are singular");
+  const core::PivotedLu<double> lu(matrix);
+  if (!lu.regular()) throw core::NotConverged("the rates of the film are singular");
   Eigen::Map<Eigen::VectorXd>(rates.data(), n) = -lu.solve(Eigen::Map<const Eigen::VectorXd>(at.residual.data(), n));
   return rates;
 }

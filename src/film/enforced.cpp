@@ -1,6 +1,5 @@
 #include "whirl/film/enforced.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/core/shell.hpp"
 #include "whirl/film/film_matrix.hpp"
 
@@ -31,7 +31,7 @@ std::size_t at(Index i) {
 
 // dg/ds + i k omega dg/ds' at rest, factorised, of k = 0, 1, ...: the same whatever the number of points.
 struct Enforced::Factors {
-  std::vector<std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<Complex>>>> of;
+  std::vector<core::PivotedLu<Complex>> of;
 };
 
 // The film over one period: states [state, point].
@@ -142,9 +142,8 @@ void Enforced::Period::factor() {
   const Share& whole = film_.whole();
   FilmMatrix<Complex> matrix(whole, whole.d_states, &whole.d_rates);
   for (int k = static_cast<int>(lu.size()); k <= harmonics_; ++k) {
-    auto next = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<Complex>>>();
-    next->compute(matrix.filled(r.d_states, r.d_rates, 1.0, Complex(0.0, k * omega_)));
-    if (next->info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+    core::PivotedLu<Complex> next(matrix.filled(r.d_states, r.d_rates, 1.0, Complex(0.0, k * omega_)));
+    if (!next.regular()) throw core::NotConverged("the film by itself is singular");
     lu.push_back(std::move(next));
   }
 }
@@ -154,7 +153,7 @@ MatrixXd Enforced::Period::inverse_at_rest(const MatrixXd& r) {
   Eigen::MatrixXcd out(n_, harmonics_ + 1);
   for (int k = 0; k <= harmonics_; ++k) {
     const Eigen::VectorXcd b = in.col(k);
-    out.col(k) = (k == 0 ? 1.0 : 2.0) * factors_.of[static_cast<std::size_t>(k)]->solve(b);
+    out.col(k) = (k == 0 ? 1.0 : 2.0) * factors_.of[static_cast<std::size_t>(k)].solve(b);
   }
   return (out * to_points_).real();
 }

@@ -78,7 +78,7 @@ void GasInverse::apply(std::span<const double> r, std::span<double> x) {
   Eigen::VectorXd own = Eigen::VectorXd::Zero(count);
   if (owns_) own = Eigen::Map<const Eigen::VectorXd>(r.data() + held_, count);
   sum_over_ranks(own);
-  own = small_.solve(own - reads_ * read(x.data())).eval();
+  own = small_.solve(own - reads_ * read(x.data()));
   Eigen::Map<Eigen::VectorXd>(x.data(), held_).noalias() -= fed_ * own;
   if (owns_) Eigen::Map<Eigen::VectorXd>(x.data() + held_, count) = own;
 }

@@ -3,12 +3,12 @@
 
 #include <mpi.h>
 
-#include <Eigen/LU>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "film/ring_preconditioner.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/film/film.hpp"
 
 namespace whirl::film {
@@ -46,7 +46,7 @@ private:
   RingPreconditioner ring_;
   Eigen::MatrixXd reads_;  // A_on [unknowns x nodes_]
   Eigen::MatrixXd fed_;    // Z [nodes here x unknowns]
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+  core::DenseLu<double> small_;
 };
 
 }  // namespace whirl::film

@@ -1,9 +1,9 @@
 #include "film/strip_inverse.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "film/column_chain.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -46,7 +46,7 @@ private:
   Cut cut_;
   ColumnChain<Scalar> chain_;  // from the last column to the first if only the first one is next to a cut
   Vector to_first_, from_first_, to_last_, from_last_;
-  Eigen::PartialPivLU<Matrix> joint_;  // of the columns at all cuts of the strip
+  core::DenseLu<Scalar> joint_;  // of the columns at all cuts of the strip
 };
 
 template <class Scalar>
@@ -143,7 +143,7 @@ void StripInverse::Piece<Scalar>::solve(bool transposed, const Scalar* r, Scalar
     if (n > 0 && mine) at(cut_.mine) -= from_first.asDiagonal() * (behind ? z.bottomRows(m) : z.topRows(m));
     if (n > 0 && next) at(cut_.next) -= from_last.asDiagonal() * z.bottomRows(m);
     sum_over_ranks(comm_, at_cuts.data(), at_cuts.size());
-    at_cuts = transposed ? Matrix(joint_.transpose().solve(at_cuts)) : Matrix(joint_.solve(at_cuts));
+    at_cuts = transposed ? joint_.solve_transposed(at_cuts) : joint_.solve(at_cuts);
     if (n > 0 && mine && next) {
       for (Index k = 0; k < sides; ++k) inner_of(k) = given(k).rightCols(n);
       z.topRows(m) -= to_first.asDiagonal() * at(cut_.mine);

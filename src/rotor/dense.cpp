@@ -1,5 +1,7 @@
 #include "whirl/rotor/dense.hpp"
 
+#include <Eigen/Cholesky>
+
 #include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
 
@@ -20,10 +22,10 @@ Eigen::MatrixXd dense(Mat sparse) {
   return out;
 }
 
-Eigen::LLT<Eigen::MatrixXd> definite(const Eigen::MatrixXd& a, const std::string& what) {
-  Eigen::LLT<Eigen::MatrixXd> factors(a);
+Eigen::MatrixXd solve_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const std::string& what) {
+  const Eigen::LLT<Eigen::MatrixXd> factors(a);
   if (factors.info() != Eigen::Success) throw core::NotConverged(what + " is not positive definite");
-  return factors;
+  return factors.solve(b);
 }
 
 }  // namespace whirl::rotor

@@ -1,5 +1,4 @@
 // Real modes of a shaft at rest as a basis whose coordinates hold the masters.
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include "reduction.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/least_squares.hpp"
 #include "whirl/core/symmetric.hpp"
 
 namespace whirl::rotor {
@@ -66,22 +66,22 @@ PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction) {
     if (row >= begin && row < end) mine.row(m) = modes.rows.row(row - begin);
   }
   const Eigen::MatrixXd at_masters = sum_over_ranks(mine, comm);
-  // at_masters^T P = Q R: the first n columns of Q span what moves the masters, the others what holds them.
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(at_masters.transpose());
+  // The pseudo-inverse of at_masters moves the masters; what it does not reach, an eigenspace of the projector
+  // I - pseudo at_masters, holds them.
+  const Eigen::Index all_modes = modes.rows.cols();
+  const Eigen::MatrixXd pseudo = core::least_squares(at_masters, Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd beside = Eigen::MatrixXd::Identity(all_modes, all_modes) - pseudo * at_masters;
+  core::SymmetricPairs projector;
   core::agree(comm, [&] {
-    if (qr.rank() < n)
+    projector = core::symmetric_pairs((beside + beside.transpose()) / 2, "what holds the masters");
+    if (projector.values.sum() > static_cast<double>(all_modes - n) + 0.5)
       throw core::InputError("the modes of the shaft do not tell its masters apart: more modes, or fewer masters");
   });
-  const Eigen::MatrixXd q = qr.householderQ();
-  const Eigen::MatrixXd held = modes.rows * q.rightCols(q.cols() - n);
+  const Eigen::MatrixXd held = modes.rows * projector.vectors.rightCols(all_modes - n);
   PlanarBasis basis;
   basis.offset = Eigen::VectorXd::Zero(end - begin);
   basis.rows.resize(end - begin, modes.rows.cols());
-  // The pseudo-inverse of at_masters, of full rank: Q (R^T)^-1 P^T.
-  const Eigen::MatrixXd upper = qr.matrixR().topLeftCorner(n, n).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd permuted = qr.colsPermutation().transpose();
-  Eigen::MatrixXd moved =
-      modes.rows * (q.leftCols(n) * upper.transpose().triangularView<Eigen::Lower>().solve(permuted)).eval();
+  Eigen::MatrixXd moved = modes.rows * pseudo;
   if (held.cols() > 0) {
     const Eigen::MatrixXd stiffness = projected(k, held), mass = projected(planar.mass.get(), held);
     core::SymmetricPairs own;

@@ -108,7 +108,7 @@ PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
         sum_over_ranks(own.transpose() * Eigen::Map<const Eigen::VectorXd>(w.data(), w.size()), comm);
     if (held == 0) return basis;
     const Eigen::MatrixXd stiffness = projected(k, own);
-    core::agree(comm, [&] { basis.offset -= own * definite(stiffness, held_stiffness).solve(load); });
+    core::agree(comm, [&] { basis.offset -= own * solve_definite(stiffness, load, held_stiffness); });
     return basis;
   }
   const bool with_modes = reduction.type == Reduction::Type::craig_bampton;

@@ -3,14 +3,13 @@
 #include <fmt/core.h>
 #include <slepceps.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 
 #include "reduction.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/from_options.hpp"
 #include "whirl/rotor/dense.hpp"
 
@@ -22,6 +21,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
+
+// The rows and columns of a matrix that are listed.
+MatrixXd part(const MatrixXd& a, const std::vector<int>& rows, const std::vector<int>& columns) {
+  MatrixXd out(static_cast<Index>(rows.size()), static_cast<Index>(columns.size()));
+  for (Index j = 0; j < out.cols(); ++j)
+    for (Index i = 0; i < out.rows(); ++i)
+      out(i, j) = a(rows[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(j)]);
+  return out;
+}
 
 // Both planes of a planar matrix, all of x before all of y.
 MatrixXd both(const MatrixXd& a) {
@@ -62,7 +70,7 @@ struct Mode {
 // w = theta q these are the largest of theta q = w, theta w = -omega^2 K^-1 M q - omega K^-1 C w.
 std::vector<Mode> slowest(const MatrixXd& m, const MatrixXd& c, const MatrixXd& k, Index states) {
   const Index n = m.rows();
-  const Eigen::PartialPivLU<MatrixXd> lu(k);
+  const core::DenseLu<double> lu(k);
   const MatrixXd inertia = lu.solve(m);
   const double omega = 1 / std::sqrt(inertia.trace());
   MatrixXd a = MatrixXd::Zero(2 * n, 2 * n);
@@ -152,7 +160,7 @@ HeldModes held_modes(const Whole& a, double speed, Index states) {
   for (MatrixXd* m : {&out.displacement, &out.velocity, &out.left_displacement, &out.left_velocity})
     m->resize(n, states);
   out.quality.neglected = std::numeric_limits<double>::infinity();
-  const Eigen::LLT<MatrixXd> mass = definite(a.mass, "the mass of the shaft with its masters held");
+  const MatrixXd by_mass = solve_definite(a.mass, c.transpose(), "the mass of the shaft with its masters held");
   std::vector<bool> pair;  // of this column and the next
   Index at = 0;
   for (Mode& mode : slowest(a.mass, c, k, states)) {
@@ -166,11 +174,7 @@ HeldModes held_modes(const Whole& a, double speed, Index states) {
     normalise(mode.shape, a.mass);
     VectorXcd left = mode.shape;
     left.tail(n / 2) *= -1;
-    const VectorXcd inertia = c.transpose() * left;
-    VectorXcd left_displacement(n);
-    left_displacement.real() = mass.solve(inertia.real());
-    left_displacement.imag() = mass.solve(inertia.imag());
-    left_displacement += mode.s * left;
+    const VectorXcd left_displacement = by_mass * left + mode.s * left;
     const VectorXcd velocity = mode.s * mode.shape;
     const auto put = [&](MatrixXd& to, const VectorXcd& from) {
       to.col(at) = from.real();
@@ -188,8 +192,8 @@ HeldModes held_modes(const Whole& a, double speed, Index states) {
   core::require(at == states, "as many modes as were asked for");
   const MatrixXd product = out.left_velocity.transpose() * a.mass * out.velocity +
                            out.left_displacement.transpose() * a.mass * out.displacement;
-  const Eigen::FullPivLU<MatrixXd> biorthogonal(product);
-  if (!biorthogonal.isInvertible())
+  const core::DenseLu<double> biorthogonal(product);
+  if (!(biorthogonal.rcond() > std::numeric_limits<double>::epsilon()))
     throw core::NotConverged("the modes of the shaft with its masters held have no left vectors");
   const MatrixXd factor = biorthogonal.inverse().transpose();
   out.left_velocity *= factor;
@@ -211,17 +215,18 @@ StateBasis state_basis(const Planar& planar, const Options& options) {
     if (!std::binary_search(masters.begin(), masters.end(), i)) slaves.push_back(i);
   const auto n = static_cast<Index>(m.rows()), n_masters = static_cast<Index>(masters.size()),
              n_slaves = static_cast<Index>(slaves.size()), states = Index{4} * options.reduction.modes;
-  const MatrixXd k_ss = k(slaves, slaves);
+  const MatrixXd k_ss = part(k, slaves, slaves);
 
   // T of one plane.
   MatrixXd t = MatrixXd::Zero(n, n_masters);
-  t(slaves, Eigen::all) = -definite(k_ss, held_stiffness).solve(k(slaves, masters));
+  const MatrixXd carried = solve_definite(k_ss, part(k, slaves, masters), held_stiffness);
+  for (Index i = 0; i < n_slaves; ++i) t.row(slaves[static_cast<std::size_t>(i)]) = -carried.row(i);
   for (Index j = 0; j < n_masters; ++j) t(masters[static_cast<std::size_t>(j)], j) = 1;
   const MatrixXd per_mass =
-      t * definite(t.transpose() * m * t, "the mass of the masters").solve(MatrixXd::Identity(n_masters, n_masters));
+      t * solve_definite(t.transpose() * m * t, MatrixXd::Identity(n_masters, n_masters), "the mass of the masters");
 
-  const Whole held =
-      whole_of(m(slaves, slaves), g(slaves, slaves), k_ss, damping_of(planar, n)(slaves, slaves), options);
+  const Whole held = whole_of(part(m, slaves, slaves), part(g, slaves, slaves), k_ss,
+                              part(damping_of(planar, n), slaves, slaves), options);
   const HeldModes modes = held_modes(held, speed, states);
 
   StateBasis out;
@@ -245,7 +250,7 @@ StateBasis state_basis(const Planar& planar, const Options& options) {
   const core::ReadArray w(planar.weight.get());
   VectorXd load = VectorXd::Zero(2 * n_slaves);
   for (Index i = 0; i < n_slaves; ++i) load(n_slaves + i) = -w[slaves[static_cast<std::size_t>(i)]];
-  const VectorXd shape = (held.stiffness + speed * held.circulatory).partialPivLu().solve(load);
+  const VectorXd shape = core::DenseLu<double>(held.stiffness + speed * held.circulatory).solve(load);
   out.offset = VectorXd::Zero(2 * n);
   for (Index i = 0; i < n_slaves; ++i)
     for (Index plane = 0; plane < 2; ++plane)

@@ -1,7 +1,6 @@
 // Counts eigenvalues of sparse pencils by the winding number of their determinant.
 
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "spectral/pencil_search.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/spectral/count.hpp"
 
 namespace whirl::spectral {
@@ -47,21 +47,6 @@ Sparse whole(Mat distributed) {
   return out;
 }
 
-// The determinant itself overflows; only its direction is wanted.
-class Factors : public Eigen::SparseLU<Sparse> {
-public:
-  [[nodiscard]] Complex direction() const {
-    Complex out = static_cast<double>(m_detPermR * m_detPermC);
-    for (Eigen::Index j = 0; j < cols(); ++j)
-      for (SCMatrix::InnerIterator it(m_Lstore, j); it; ++it)
-        if (it.index() == j) {
-          out *= it.value() / std::abs(it.value());
-          break;
-        }
-    return out;
-  }
-};
-
 class Contour {
 public:
   Contour(Sparse a, Sparse b, const std::vector<Complex>& known) : a_(std::move(a)), b_(std::move(b)), known_(known) {}
@@ -69,18 +54,15 @@ public:
   // False if the factors are too large, or the matrix is singular there.
   [[nodiscard]] bool begin(Complex lambda) {
     const Sparse t = a_ - lambda * b_;
-    lu_.analyzePattern(t);
-    lu_.factorize(t);
-    return lu_.info() == Eigen::Success && static_cast<double>(lu_.nnzL() + lu_.nnzU()) <= most_entries;
+    return lu_.compute(t) && static_cast<double>(lu_.entries()) <= most_entries;
   }
 
   // Direction of det(a - lambda b) over the product of lambda - lambda_k.
   [[nodiscard]] std::optional<Complex> quotient(Complex lambda) {
     const Sparse t = a_ - lambda * b_;
-    lu_.factorize(t);
     ++factorisations;
-    if (lu_.info() != Eigen::Success) return std::nullopt;
-    Complex out = lu_.direction();
+    if (!lu_.factorise(t)) return std::nullopt;
+    Complex out = std::polar(1.0, lu_.angle());
     for (const Complex k : known_) {
       const Complex d = lambda - k;
       if (d == 0.0) return std::nullopt;
@@ -143,7 +125,7 @@ public:
 private:
   Sparse a_, b_;
   const std::vector<Complex>& known_;
-  Factors lu_;
+  core::PivotedLu<Complex> lu_;
 };
 
 // The unknown ones crowd beyond the farthest known one, near -1/tau of a shaft with damping in proportion to its

@@ -1,9 +1,9 @@
 #include "spectral/left_vectors.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/from_options.hpp"
 
@@ -86,7 +86,7 @@ LeftVectors::Vector LeftVectors::of(EPS right, PetscInt i) {
     for (Eigen::Index r = 0; r < n; ++r)
       products(l, r) = y[static_cast<std::size_t>(l)].vector.cwiseProduct(x[static_cast<std::size_t>(r)].image).sum();
   const auto own = static_cast<Eigen::Index>(std::find(rights.begin(), rights.end(), i) - rights.begin());
-  const Eigen::RowVectorXcd shares = products.partialPivLu().inverse().row(own);
+  const Eigen::RowVectorXcd shares = core::DenseLu<Complex>(products).inverse().row(own);
   Eigen::VectorXcd row = Eigen::VectorXcd::Zero(y[0].vector.size()), image = row;
   for (Eigen::Index l = 0; l < n; ++l) {
     row += shares(l) * y[static_cast<std::size_t>(l)].vector;

@@ -1,10 +1,10 @@
 #include "spectral/rounding.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/spectral/dense.hpp"
 
 namespace whirl::spectral {
@@ -47,7 +47,7 @@ Eigen::MatrixXcd DensePencil::left() const {
   for (Eigen::Index k = 0; k < n; ++k)
     if (const auto i = static_cast<std::size_t>(k); !std::isfinite(std::abs(values_[i])))
       of_b.col(k) = a_ * vectors_[i];
-  return of_b.partialPivLu().inverse();
+  return core::DenseLu<Complex>(of_b).inverse();
 }
 
 double DensePencil::newton_step(std::size_t k) const {
@@ -69,7 +69,7 @@ double DensePencil::newton_step(std::size_t k) const {
     step.row(i) /= size(i);
     right(i) /= size(i);
   }
-  const double moved = std::abs(step.partialPivLu().solve(right)(n));
+  const double moved = std::abs(core::DenseLu<Complex>(step).solve(right)(n));
   return std::isfinite(moved) ? moved : std::abs(v);
 }
 

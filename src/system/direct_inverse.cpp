@@ -1,6 +1,5 @@
 #include "direct_inverse.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <complex>
 #include <limits>
@@ -8,6 +7,7 @@
 
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/entry_stream.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/film/film_matrix.hpp"
 
 namespace whirl::system {
@@ -26,26 +26,23 @@ template <class Scalar>
 class LocalFactors {
 public:
   LocalFactors(MPI_Comm /*comm*/, const film::Share& whole) : matrix_(whole, whole.d_states, &whole.d_rates) {
-    lu_.analyzePattern(matrix_.pattern());
+    lu_.analyse(matrix_.pattern());
   }
   void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, Scalar sigma) {
-    lu_.factorize(matrix_.filled(d_states, d_rates, alpha, sigma));
+    lu_.factorise(matrix_.filled(d_states, d_rates, alpha, sigma));
   }
   void solve(bool transposed, std::span<const Scalar> r, std::span<Scalar> x) {
-    if (lu_.info() != Eigen::Success) return not_finite(x);
-    using Columns = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+    if (!lu_.regular()) return not_finite(x);
     const Eigen::Index n = matrix_.pattern().rows(), columns = static_cast<Eigen::Index>(r.size()) / n;
-    const Eigen::Map<const Columns> right(r.data(), n, columns);
-    Eigen::Map<Columns> answer(x.data(), n, columns);
     if (transposed)
-      answer = lu_.transpose().solve(right);
+      lu_.solve_transposed(r.data(), x.data(), columns);
     else
-      answer = lu_.solve(right);
+      lu_.solve(r.data(), x.data(), columns);
   }
 
 private:
   film::FilmMatrix<Scalar> matrix_;
-  Eigen::SparseLU<Eigen::SparseMatrix<Scalar>> lu_;
+  core::PivotedLu<Scalar> lu_;
 };
 
 /// Of a film on several ranks; a complex number a + i b is the block [a -b; b a].

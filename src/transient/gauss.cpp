@@ -1,8 +1,8 @@
 #include "transient/gauss.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 
 namespace whirl::transient {
@@ -28,7 +28,7 @@ solve::Tableau gauss(int stages) {
     right.row(k) = c.transpose().array().pow(power) / power;
     whole(k) = 1 / power;
   }
-  const Eigen::PartialPivLU<MatrixXd> lu(powers);
+  const core::DenseLu<double> lu(powers);
   a = lu.solve(right).transpose();
   b = lu.solve(whole);
   return {a, b, c, 2 * stages};
@@ -51,8 +51,8 @@ GaussSteps::GaussSteps(Equations& equations, int stages, double tolerance)
     : equations_(equations),
       tableau_(gauss(stages)),
       tolerance_(tolerance),
-      inverse_(tableau_.a.inverse()),
-      lower_(lower_factor(tableau_.a).inverse()),
+      inverse_(core::DenseLu<double>(tableau_.a).inverse()),
+      lower_(core::DenseLu<double>(lower_factor(tableau_.a)).inverse()),
       end_weights_(inverse_.transpose() * tableau_.b),
       slope_(equations.make_state()),
       work_(equations.make_state()),

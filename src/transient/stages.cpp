@@ -1,8 +1,8 @@
 #include "transient/stages.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::transient {
@@ -11,31 +11,32 @@ using core::check;
 
 Eigen::VectorXd embedded_weights(const solve::Tableau& t) {
   core::require(t.order == 4 && t.stages() == 5, "the estimate is that of the scheme of order 4");
-  Eigen::Matrix4d conditions;
+  Eigen::MatrixXd conditions(4, 4);
   conditions.row(0).setOnes();
   conditions.row(1) = t.c.head(4);
   conditions.row(2) = t.c.head(4).cwiseAbs2();
   conditions.row(3) = (t.a * t.c).head(4);
+  const Eigen::VectorXd wanted = Eigen::Vector4d(1, 1.0 / 2, 1.0 / 3, 1.0 / 6);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(5);
-  b.head(4) = conditions.partialPivLu().solve(Eigen::Vector4d(1, 1.0 / 2, 1.0 / 3, 1.0 / 6));
+  b.head(4) = core::DenseLu<double>(conditions).solve(wanted);
   return b;
 }
 
 Eigen::MatrixXd continuous_weights(const solve::Tableau& t) {
   core::require(t.order == 4 && t.stages() == 5, "the continuation is that of the scheme of order 4");
-  Eigen::Matrix<double, 5, 5> conditions;
+  Eigen::MatrixXd conditions(5, 5);
   conditions.row(0).setOnes();
   conditions.row(1) = t.c;
   conditions.row(2) = t.c.cwiseAbs2();
   conditions.row(3) = t.a * t.c;
   conditions.row(4) = t.c.array().cube();
-  Eigen::Matrix<double, 5, 4> wanted = Eigen::Matrix<double, 5, 4>::Zero();
+  Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(5, 4);
   wanted(0, 0) = 1;
   wanted(1, 1) = 1.0 / 2;
   wanted(2, 2) = 1.0 / 3;
   wanted(3, 2) = 1.0 / 6;
   wanted(4, 3) = 1.0 / 4;
-  return conditions.partialPivLu().solve(wanted);
+  return core::DenseLu<double>(conditions).solve(wanted);
 }
 
 StageTangents::StageTangents(Equations& equations, const solve::Tableau& tableau)

@@ -99,13 +99,12 @@ ThinInverse::Factors& ThinInverse::factorise(const ThinOperator& a) {
   const MatrixXd b = blocks.b;
   if (m.rows() <= dense_until) {
     const MatrixXd whole(m);
-    made->inverse = whole.partialPivLu().inverse();
+    made->inverse = core::DenseLu<double>(whole).inverse();
     if (!is_regular(whole, made->inverse)) throw core::NotConverged("the matrix of the rotor is singular");
     made->lead.noalias() = made->inverse * b;
   } else {
-    if (!made->sparse) made->sparse = std::make_unique<Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>>>();
-    made->sparse->compute(m);
-    if (made->sparse->info() != Eigen::Success) throw core::NotConverged("the matrix of the rotor is singular");
+    if (!made->sparse) made->sparse = std::make_unique<core::PivotedLu<double>>();
+    if (!made->sparse->compute(m)) throw core::NotConverged("the matrix of the rotor is singular");
     made->lead = made->sparse->solve(b);
   }
   made->seen = blocks.c * made->lead;

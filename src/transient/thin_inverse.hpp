@@ -3,11 +3,11 @@
 // made.
 
 #include <Eigen/Core>
-#include <Eigen/LU>
-#include <Eigen/SparseLU>
 #include <memory>
 #include <vector>
 
+#include "whirl/core/dense_lu.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/core/sparse_lu.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/solve/cycle/scaled_point.hpp"
@@ -66,7 +66,7 @@ private:
   struct Factors {
     double tau = 0, parameter = 0;
     Eigen::MatrixXd inverse;  // of L1 + tau L0 if that is small, or
-    std::unique_ptr<Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>>> sparse;
+    std::unique_ptr<core::PivotedLu<double>> sparse;
     Eigen::MatrixXd lead, seen;  // its inverse times B [n x r], and C times that [w x r]
     std::vector<std::unique_ptr<Film>> films;
     long used = 0;
@@ -85,8 +85,8 @@ private:
   Factors* now_ = nullptr;  // what was prepared:
   const ThinOperator* prepared_ = nullptr;
   long version_ = -1;
-  Eigen::MatrixXd by_input_;                    // df/dw with what the films' states add [r x w]
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // I - tau by_input C (L1 + tau L0)^-1 B
+  Eigen::MatrixXd by_input_;     // df/dw with what the films' states add [r x w]
+  core::DenseLu<double> small_;  // I - tau by_input C (L1 + tau L0)^-1 B
   long factorisations_ = 0, clock_ = 0;
   Eigen::VectorXd left_, more_;                       // work space of the refinement
   Eigen::VectorXd forces_, rhs_, inputs_, by_force_;  // and of apply()

@@ -1,12 +1,12 @@
 #include "transient/ts_stepper.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "transient/stages.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/from_options.hpp"
 
@@ -243,7 +243,7 @@ void TsStepper::interpolate(double time, Vec u) {
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(tableau_.stages());
     for (Eigen::Index p = continuous_.cols() - 1; p >= 0; --p) weights = part * (weights + continuous_.col(p));
     // With h K = A^-1 (Y - u_0).
-    weights = tableau_.a.transpose().partialPivLu().solve(weights).eval();
+    weights = core::DenseLu<double>(tableau_.a).solve_transposed(weights);
     check(VecCopy(start_.get(), u));
     check(VecScale(u, 1 - weights.sum()));
     for (std::size_t i = 0; i < stages_.size(); ++i)

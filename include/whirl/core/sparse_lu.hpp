@@ -2,9 +2,10 @@
 // Sparse direct solution on one rank, made again and again on one pattern.
 
 #include <Eigen/SparseCore>
-#include <memory>
+#include <optional>
 
 #include "whirl/core/petsc.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 
 namespace whirl::core {
 
@@ -15,11 +16,6 @@ class SparseLu {
 public:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  SparseLu();
-  SparseLu(SparseLu&&) noexcept;
-  SparseLu& operator=(SparseLu&&) noexcept;
-  ~SparseLu();
-
   /// False if A is singular; nothing can be solved then.
   [[nodiscard]] bool compute(const Matrix& a);
   /// x = A^-1 y, arrays that do not overlap.
@@ -27,11 +23,10 @@ public:
   /// A^-1 y and A^-T y of all columns.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& y) const;
   [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& y) const;
-  [[nodiscard]] bool takes_pivots() const { return pivoted_ != nullptr; }
+  [[nodiscard]] bool takes_pivots() const { return pivoted_.has_value(); }
 
 private:
   using ByRows = Eigen::SparseMatrix<double, Eigen::RowMajor, PetscInt>;
-  struct Pivoted;
 
   [[nodiscard]] bool without_pivots(const Matrix& a);
   void set_pattern(const ByRows& rows);
@@ -40,7 +35,7 @@ private:
   ByRows rows_;  // the pattern
   core::Matrix matrix_, factors_;
   Vector from_, to_;
-  std::unique_ptr<Pivoted> pivoted_;
+  std::optional<PivotedLu<double>> pivoted_;
 };
 
 }  // namespace whirl::core

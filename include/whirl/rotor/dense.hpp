@@ -3,7 +3,7 @@
 
 #include <petscmat.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <string>
 
 namespace whirl::rotor {
@@ -11,7 +11,8 @@ namespace whirl::rotor {
 /// All entries of a matrix that stands on one rank alone.
 [[nodiscard]] Eigen::MatrixXd dense(Mat sparse);
 
-/// The Cholesky factors of a matrix that has to be positive definite, `what` in words. Throws core::NotConverged.
-[[nodiscard]] Eigen::LLT<Eigen::MatrixXd> definite(const Eigen::MatrixXd& a, const std::string& what);
+/// a^-1 b of a matrix that has to be positive definite, `what` in words. Throws core::NotConverged.
+[[nodiscard]] Eigen::MatrixXd solve_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                                             const std::string& what);
 
 }  // namespace whirl::rotor

@@ -1,10 +1,10 @@
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
 #include "whirl/core/agree.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -206,7 +206,7 @@ void AugmentedProblem::solve(Vec rhs, Vec x) {
   core::Vector whole = make_unknown();
   join(u.get(), VectorXd::Zero(inner_size_), 0, whole.get());
   small(k) -= dot(added_.get(), whole.get());
-  small = small_.partialPivLu().solve(small).eval();
+  small = core::DenseLu<double>(small_).solve(small);
   check(VecAXPY(u.get(), small(0), tangent_.get()));
   check(VecAXPY(u.get(), small(k), response_.get()));
   join(u.get(), small.segment(1, inner_size_), small(k), x);

@@ -1,10 +1,10 @@
 #include "solve/bifurcation/bordered_monodromy.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 
 #include "whirl/core/agree.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/shell.hpp"
 
@@ -74,10 +74,10 @@ Operator operator_of(const Matrix& s, const Product& times_m) {
   MatrixXd small(p + k, p + k);
   small << a0 * MatrixXd::Identity(p, p) + s.from.transpose() * s.to, s.from.transpose() * s.b, s.c.transpose() * s.to,
       s.c.transpose() * s.b;
-  o.precondition = [&s, lu = Eigen::PartialPivLU<MatrixXd>(small), n, k, p, a0](const VectorXd& x) {
+  o.precondition = [&s, lu = core::DenseLu<double>(small), n, k, p, a0](const VectorXd& x) {
     VectorXd z(p + k), y(n + k);
     z << s.from.transpose() * x.head(n), s.c.transpose() * x.head(n) - a0 * x.tail(k);
-    z = lu.solve(z).eval();
+    z = lu.solve(z);
     y << (x.head(n) - s.to * z.head(p) - s.b * z.tail(k)) / a0, z.tail(k);
     return y;
   };
@@ -159,7 +159,7 @@ void known_part(Composition& joined, const std::vector<double>& polynomial, Matr
 MatrixXd solve_polynomial(CycleProblem& problem, const std::vector<double>& polynomial, const MatrixXd& rhs) {
   Composition& joined = problem.composition();
   if (joined.has_monodromy()) {
-    MatrixXd x = whole_polynomial(joined.monodromy(), polynomial).partialPivLu().solve(rhs);
+    MatrixXd x = core::DenseLu<double>(whole_polynomial(joined.monodromy(), polynomial)).solve(rhs);
     core::share(problem.comm(), x.data(), static_cast<std::size_t>(x.size()));
     return x;
   }
@@ -204,8 +204,8 @@ void BorderedMonodromy::solve(const std::vector<double>& polynomial) {
     MatrixXd whole(n + k, n + k), unit = MatrixXd::Zero(n + k, k);
     whole << a, size * b_, size * c_.transpose(), MatrixXd::Zero(k, k);
     unit.bottomRows(k) = size * MatrixXd::Identity(k, k);
-    const Eigen::PartialPivLU<MatrixXd> lu(whole);
-    MatrixXd right = lu.solve(unit), adjoint = lu.transpose().solve(unit);
+    const core::DenseLu<double> lu(whole);
+    MatrixXd right = lu.solve(unit), adjoint = lu.solve_transposed(unit);
     for (MatrixXd* m : {&right, &adjoint}) core::share(problem_.comm(), m->data(), static_cast<std::size_t>(m->size()));
     v = right.topRows(n);
     g = size * right.bottomRows(k);

@@ -1,7 +1,7 @@
-#include <Eigen/LU>
 #include <cmath>
 
 #include "whirl/core/agree.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -39,7 +39,7 @@ private:
   int rank_ = 0, size_ = 1;
   std::vector<MatrixXd> to_rank_;    // state entering each rank per (x_0, d) [n x (n + nb)]
   std::vector<MatrixXd> rank_maps_;  // gathered [(n + nb) x (n + nb)] of each rank
-  Eigen::PartialPivLU<MatrixXd> small_;
+  core::DenseLu<double> small_;
   MatrixXd monodromy_;
 };
 
@@ -114,7 +114,7 @@ void DenseComposition::solve(const double* rhs, VectorXd& border, double* x) {
   }
   VectorXd small(all);
   small << through, border - added;
-  small = small_.solve(small).eval();
+  small = small_.solve(small);
   border = small.tail(nb);
   // Back: with the state entering this rank and the border known, each interval follows from its left neighbour.
   entering += to_rank_[static_cast<std::size_t>(rank_)] * small;
@@ -139,7 +139,7 @@ void DenseComposition::solve_transposed(const double* rhs, VectorXd& border, dou
     lambda = (own.head(n) + q.topLeftCorner(n, n).transpose() * lambda).eval();
   }
   small << lambda, border - seen;
-  small = small_.transpose().solve(small).eval();
+  small = small_.solve_transposed(small);
   const VectorXd sigma = small.tail(nb);
   lambda = small.head(n);
   for (int p = size_ - 1; p > rank_; --p) {
@@ -155,7 +155,7 @@ void DenseComposition::solve_transposed(const double* rhs, VectorXd& border, dou
 VectorXd DenseComposition::critical_start(double mu) {
   const Index n = run_->n;
   // The shift stands beside the multiplier, where the matrix is regular.
-  const Eigen::PartialPivLU<MatrixXd> lu(monodromy_ - mu * (1 + 1e-10) * MatrixXd::Identity(n, n));
+  const core::DenseLu<double> lu(monodromy_ - mu * (1 + 1e-10) * MatrixXd::Identity(n, n));
   VectorXd v(n);
   for (Index k = 0; k < n; ++k) v(k) = std::sin(1.0 + static_cast<double>(k));
   for (int k = 0; k < 4; ++k) v = lu.solve(v).normalized();

@@ -1,6 +1,6 @@
-#include <Eigen/LU>
 
 #include "whirl/solve/cycle/interval.hpp"
+#include "whirl/core/dense_lu.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -24,8 +24,8 @@ public:
       }
     lu_.compute(a_);
   }
-  void solve(MatrixXd& y) const override { y = lu_.solve(y).eval(); }
-  void solve_transposed(MatrixXd& y) const override { y = lu_.transpose().solve(y).eval(); }
+  void solve(MatrixXd& y) const override { y = lu_.solve(y); }
+  void solve_transposed(MatrixXd& y) const override { y = lu_.solve_transposed(y); }
   MatrixXd start(const MatrixXd& x) const override { return a0_ * x; }
   MatrixXd start_transposed(const MatrixXd& y) const override { return a0_.transpose() * y; }
   VectorXd multiply(const VectorXd& x_start, const VectorXd& x) const override {
@@ -40,7 +40,7 @@ public:
 
 private:
   MatrixXd a_, a0_;
-  Eigen::PartialPivLU<MatrixXd> lu_;
+  core::DenseLu<double> lu_;
 };
 
 }  // namespace

@@ -99,7 +99,7 @@ void LinearPart::factorise() {
   const Index m = scheme.degree, kept = n - eliminated();
   const MatrixXd slope = scheme.slope.rightCols(m) / length;
   value_ = scheme.value.rightCols(m);
-  integral_ = slope.inverse();
+  integral_ = core::DenseLu<double>(slope).inverse();
   value_integral_ = value_ * integral_;
   const MatrixXd twice = value_integral_ * value_;
   coupling_ = l0(row_, rate_state_) * alpha_.inverse().matrix().asDiagonal();
@@ -120,13 +120,8 @@ void LinearPart::solve(MatrixXd& x) const {
   const MatrixXd y_i = points(rate_row_, Eigen::all);
   MatrixXd x_k = points(row_, Eigen::all);
   x_k.noalias() -= coupling_ * along(value_integral_, y_i);
-  if (x.cols() == 1) {  // the kernel for matrices is twice as slow for one column
-    Map<VectorXd> v(x_k.data(), m * kept);
-    v = lu_.solve(v).eval();
-  } else {
-    Map<MatrixXd> v(x_k.data(), m * kept, x.cols());
-    v = lu_.solve(v).eval();
-  }
+  Map<MatrixXd> v(x_k.data(), m * kept, x.cols());
+  v = lu_.solve(v);
   const MatrixXd x_b = along(value_, x_k(rate_of_, Eigen::all));
   points(state_, Eigen::all) = x_k;
   points(rate_state_, Eigen::all) =
@@ -140,13 +135,8 @@ void LinearPart::solve_transposed(MatrixXd& x) const {
   MatrixXd x_k = points(state_, Eigen::all);
   const MatrixXd vu = beta_.matrix().asDiagonal() * along(value_.transpose(), u);
   for (Index e = 0; e < eliminated(); ++e) x_k.row(rate_of_[static_cast<std::size_t>(e)]) -= vu.row(e);
-  if (x.cols() == 1) {
-    Map<VectorXd> v(x_k.data(), m * kept);
-    v = lu_.transpose().solve(v).eval();
-  } else {
-    Map<MatrixXd> v(x_k.data(), m * kept, x.cols());
-    v = lu_.transpose().solve(v).eval();
-  }
+  Map<MatrixXd> v(x_k.data(), m * kept, x.cols());
+  v = lu_.solve_transposed(v);
   u -= along(value_integral_.transpose(), coupling_.transpose() * x_k);
   points(row_, Eigen::all) = x_k;
   points(rate_row_, Eigen::all) = u;

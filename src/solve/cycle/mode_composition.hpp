@@ -1,7 +1,6 @@
 #pragma once
 // A cycle of a machine that is linear but for thin forces, solved in its forces.
 
-#include <Eigen/LU>
 #include <memory>
 #include <vector>
 

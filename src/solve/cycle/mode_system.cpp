@@ -1,6 +1,7 @@
 // Products of the composition by time modes, and its small system.
 
 #include "solve/cycle/mode_composition.hpp"
+#include "whirl/core/dense_lu.hpp"
 
 namespace whirl::solve {
 
@@ -143,7 +144,7 @@ void ModeComposition::small_solve(MatrixXd& forces, VectorXd& border, bool trans
         small_product(unit.data(), dense.col(k).data(), transposed);
         unit(k) = 0;
       }
-      answer = dense.partialPivLu().solve(answer).eval();
+      answer = core::DenseLu<double>(dense).solve(answer);
     }
   }
   if (size_ > 1) MPI_Bcast(answer.data(), static_cast<int>(size + nb), MPI_DOUBLE, 0, run_->comm);

@@ -1,7 +1,7 @@
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "solve/cycle/own_block.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/solve/cycle/interval.hpp"
 
 // With the own states of all films eliminated down to their separators s_S, the forces f at the points are those of a
@@ -57,7 +57,7 @@ private:
   std::vector<MatrixXd> tangents_;
   Index n_, own_, last_;  // all states, own ones, size of the small system
   MatrixXd by_inputs_;    // [S; -Q]
-  Eigen::PartialPivLU<MatrixXd> small_;
+  core::DenseLu<double> small_;
 };
 
 OwnInterval::OwnInterval(std::shared_ptr<const LinearPart> part, const std::vector<problem::OwnStates>& films,
@@ -263,7 +263,7 @@ void OwnInterval::solve_transposed(MatrixXd& y) const {
       answer.segment(separators_[i], m * b.shape().separators) = border.tail(m * b.shape().separators);
     }
     answer.head(m * p.r).noalias() += p.y.transpose() * core.col(0) + p.vy.transpose() * eta.col(0);
-    answer = small_.transpose().solve(answer).eval();
+    answer = small_.solve_transposed(answer);
     eta.noalias() += by_inputs_.transpose() * answer;
     core += p.inputs_transposed(eta);
     p.solve_transposed(core);

@@ -1,8 +1,7 @@
 #include "whirl/solve/cycle/scaled_point.hpp"
 
-#include <Eigen/LU>
-
 #include "solve/newton/thin.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -265,7 +264,7 @@ VectorXd ScaledPoint::rate(double angle, const VectorXd& x) {
   for (int pass = 0; pass < 2; ++pass) {
     residual(angle, x, rate, f);
     linearise(angle, x, rate, jx, jxdot, nullptr);
-    rate -= jxdot.partialPivLu().solve(f);
+    rate -= core::DenseLu<double>(jxdot).solve(f);
   }
   return rate;
 }

@@ -290,7 +290,7 @@ void SpreadCycle::solve(Vec rhs, Vec out) {
   sum(top);
   VectorXd small(p + borders_);
   small << top, r_border - added - q_added;
-  small = small_.solve(small).eval();
+  small = small_.solve(small);
   const VectorXd border = small.tail(borders_);
   state = basis_ * small.head(p) + q + q_ends_ * border;
   groups_.in_turn(state, [&] {

@@ -1,9 +1,9 @@
 #include "solve/cycle/spread_interval.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "whirl/core/agree.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/index.hpp"
 
@@ -35,7 +35,8 @@ SpreadStep::SpreadStep(MPI_Comm comm, PetscInt local, const Scheme& scheme)
     : comm_(comm), scheme_(&scheme), gate_(comm) {
   core::require(scheme.points == Points::radau, "intervals spread over ranks have Radau points");
   const Index m = scheme.degree;
-  triangle_ = lower_factor(scheme.slope.rightCols(m).inverse()).inverse().triangularView<Eigen::Lower>();
+  triangle_ =
+      lower_factor(core::DenseLu<double>(scheme.slope.rightCols(m)).inverse()).inverse().triangularView<Eigen::Lower>();
   shift_ = std::pow(triangle_.diagonal().prod(), 1 / static_cast<double>(m));
   one_ = core::make_vector(comm, local, PETSC_DETERMINE);
   other_ = core::duplicate(one_.get());

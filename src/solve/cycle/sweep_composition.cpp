@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solve/cycle/dominant_subspace.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
@@ -199,7 +200,7 @@ VectorXd SweepComposition::critical_start(double mu) {
   if (last()) {
     const MatrixXd projected = found_ ? MatrixXd(basis_.transpose() * image_) : whole;
     const Index p = projected.rows();
-    const Eigen::PartialPivLU<MatrixXd> lu(projected - mu * (1 + 1e-10) * MatrixXd::Identity(p, p));
+    const core::DenseLu<double> lu(projected - mu * (1 + 1e-10) * MatrixXd::Identity(p, p));
     VectorXd z = VectorXd::Ones(p);
     for (int k = 0; k < 4; ++k) z = lu.solve(z).normalized();
     v = found_ ? VectorXd(basis_ * z) : z;

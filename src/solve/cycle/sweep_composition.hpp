@@ -1,11 +1,11 @@
 #pragma once
 // How sweeps join the intervals of a cycle.
 
-#include <Eigen/LU>
 #include <complex>
 #include <optional>
 #include <vector>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/shell.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 
@@ -63,7 +63,7 @@ private:
   // On the last rank.
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V [n x p], K V [nb x p]
   Eigen::MatrixXd ends_, ends_added_;            // Theta [n x nb], D + corner [nb x nb]
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+  core::DenseLu<double> small_;
   static constexpr double first_radius = 0.2;
   double radius_ = first_radius;              // multipliers above it are found
   std::optional<std::vector<double>> taken_;  // a warm start that waits for the next run: radius, then V

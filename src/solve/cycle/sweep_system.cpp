@@ -57,7 +57,7 @@ void SweepComposition::precondition(Vec v, Vec y, bool transposed) const {
   VectorXd z(p + nb);
   z << from.transpose() * x.head(n), x.tail(nb);
   if (transposed) z.tail(nb) += ends_.transpose() * x.head(n);
-  z = transposed ? VectorXd(small_.transpose().solve(z)) : VectorXd(small_.solve(z));
+  z = transposed ? small_.solve_transposed(z) : small_.solve(z);
   answer.head(n) = x.head(n) + to * z.head(p);
   if (!transposed) answer.head(n) += ends_ * z.tail(nb);
   answer.tail(nb) = z.tail(nb);

@@ -1,8 +1,8 @@
-#include <Eigen/LU>
 #include <optional>
 
 #include "solve/cycle/pencil.hpp"
 #include "solve/cycle/time_modes.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/solve/cycle/interval.hpp"
 
 namespace whirl::solve {
@@ -67,7 +67,7 @@ public:
   }
   void solve_transposed(MatrixXd& y) const override {
     // A^-T y = W0^-T (y + V^T S^T K^-T Y^T y)
-    const MatrixXd t = core().transpose().solve(part_->y.transpose() * y);
+    const MatrixXd t = core().solve_transposed(part_->y.transpose() * y);
     y += part_->inputs_transposed(times_s_transposed(t));
     part_->solve_transposed(y);
   }
@@ -137,10 +137,10 @@ private:
     out -= part_->b * X(tangent(j) * X(part_->c * x));
     return out;
   }
-  [[nodiscard]] const Eigen::PartialPivLU<MatrixXd>& core() const {
+  [[nodiscard]] const core::DenseLu<double>& core() const {
     part_->prepare();
     const Index size = part_->scheme.degree * part_->r;
-    if (k_.rows() == 0) k_.compute(MatrixXd::Identity(size, size) - times_s(part_->vy));
+    if (k_.size() == 0) k_.compute(MatrixXd::Identity(size, size) - times_s(part_->vy));
     return k_;
   }
   // S v for v [mw x k] and S^T v for v [mr x k], block by block.
@@ -161,7 +161,7 @@ private:
 
   std::shared_ptr<const Part> part_;
   std::vector<MatrixXd> s_;
-  mutable Eigen::PartialPivLU<MatrixXd> k_;
+  mutable core::DenseLu<double> k_;
 };
 
 }  // namespace

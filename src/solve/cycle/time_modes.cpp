@@ -4,9 +4,9 @@
 
 #include <petscblaslapack.h>  // wants the one before
 
-#include <Eigen/LU>
 #include <algorithm>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -45,12 +45,12 @@ void eigenpairs(MatrixXd a, Eigen::VectorXcd& values, MatrixXcd& vectors) {
 
 TimeModes time_modes(const MatrixXd& value, const MatrixXd& slope, int shares, Index multiple) {
   const Index points = value.rows();
-  const Eigen::PartialPivLU<MatrixXd> lu(value);
+  const core::DenseLu<double> lu(value);
   if (lu.rcond() < 1e-10) throw core::NotConverged("values at the collocation points do not determine a cycle");
   Eigen::VectorXcd values;
   MatrixXcd z;
   eigenpairs(lu.solve(slope), values, z);
-  const Eigen::PartialPivLU<MatrixXcd> basis(z);
+  const core::DenseLu<std::complex<double>> basis(z);
   // Intervals of very different lengths have modes that are no basis for practical purposes.
   if (basis.rcond() < 1e-9) throw core::NotConverged("the modes in time of this mesh are no basis");
   const MatrixXcd into = basis.solve(lu.inverse().cast<std::complex<double>>()),

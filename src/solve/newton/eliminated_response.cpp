@@ -92,7 +92,7 @@ void EliminatedResponse::analyse() {
     const auto* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[c + 1];
     place_[e] = static_cast<PetscInt>(std::lower_bound(first, last, row) - matrix_.innerIndexPtr());
   });
-  lu_.analyzePattern(matrix_);
+  lu_.analyse(matrix_);
   analysed_ = true;
 }
 
@@ -125,8 +125,7 @@ void EliminatedResponse::factorise(double omega) {
       values[place_[e]] += value;
     }
   }
-  lu_.factorize(matrix_);
-  if (lu_.info() != Eigen::Success)
+  if (!lu_.factorise(matrix_))
     throw core::NotConverged("the response at this frequency could not be solved: the matrix is singular");
 }
 

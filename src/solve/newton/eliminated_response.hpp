@@ -3,9 +3,10 @@
 
 #include <petscmat.h>
 
-#include <Eigen/SparseLU>
 #include <complex>
 #include <vector>
+
+#include "whirl/core/pivoted_lu.hpp"
 
 namespace whirl::solve {
 
@@ -46,7 +47,7 @@ private:
   std::vector<PetscInt> place_;            // of an entry among the values of the reduced matrix, -1 for a zero
   bool analysed_ = false;
   Eigen::SparseMatrix<Complex> matrix_;
-  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu_;
+  core::PivotedLu<Complex> lu_;
 };
 
 }  // namespace whirl::solve

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "solve/newton/transfer_search.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/least_squares.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
 
 namespace whirl::solve {
@@ -28,7 +28,7 @@ bool in_span(const std::vector<VectorXcd>& found, const VectorXcd& z) {
   if (found.empty()) return false;
   MatrixXcd basis(z.size(), static_cast<Index>(found.size()));
   for (std::size_t k = 0; k < found.size(); ++k) basis.col(static_cast<Index>(k)) = found[k];
-  const VectorXcd part = basis.colPivHouseholderQr().solve(z);
+  const VectorXcd part = core::least_squares(basis, z);
   return (basis * part - z).norm() <= 1e-3 * z.norm();
 }
 

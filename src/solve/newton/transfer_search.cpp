@@ -1,8 +1,8 @@
 #include "solve/newton/transfer_search.hpp"
 
-#include <Eigen/SparseLU>
 #include <limits>
 
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/spectral/dense.hpp"
 
 namespace whirl::solve {
@@ -17,26 +17,7 @@ using std::numbers::pi;
 
 namespace {
 
-// The logarithm of the determinant, which itself may overflow.
-class Factors : public Eigen::SparseLU<Sparse> {
-public:
-  explicit Factors(const Sparse& m) {
-    analyzePattern(m);
-    factorize(m);
-  }
-  [[nodiscard]] bool regular() const { return info() == Eigen::Success; }
-  /// The angle of the determinant, within a whole turn.
-  [[nodiscard]] double angle() const {
-    double sum = m_detPermR * m_detPermC > 0 ? 0 : pi;
-    for (Index j = 0; j < cols(); ++j)
-      for (SCMatrix::InnerIterator e(m_Lstore, j); e; ++e)
-        if (e.index() == j) {
-          sum += std::arg(e.value());
-          break;
-        }
-    return sum;
-  }
-};
+using Factors = core::PivotedLu<Complex>;
 
 double wrapped(double angle) {
   return std::remainder(angle, 2 * pi);

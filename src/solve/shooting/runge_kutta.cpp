@@ -1,8 +1,8 @@
 #include "whirl/solve/shooting/runge_kutta.hpp"
 
-#include <Eigen/LU>
 #include <vector>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -36,7 +36,7 @@ void RungeKutta::solve_stage(Index j, double angle, double length, const VectorX
     point_.residual(angle, value, k, f);
     point_.linearise(angle, value, k, jx, jxdot, nullptr);
     if (own != 0) jxdot += length * own * jx;
-    const VectorXd d = -jxdot.partialPivLu().solve(f);
+    const VectorXd d = -core::DenseLu<double>(jxdot).solve(f);
     k += d;
     // F is linear in dx/dt, so that an explicit stage is solved at once.
     if (own == 0 || arrived(d, length, x)) break;
@@ -60,7 +60,7 @@ void RungeKutta::solve_coupled(double angle, double d_angle, double length, cons
       for (Index l = 0; l < s; ++l) matrix.block(j * n, l * n, n, n) = length * tableau_.a(j, l) * jx;
       matrix.block(j * n, j * n, n, n) += jxdot;
     }
-    const VectorXd d = -matrix.partialPivLu().solve(f);
+    const VectorXd d = -core::DenseLu<double>(matrix).solve(f);
     slopes += Eigen::Map<const MatrixXd>(d.data(), n, s);
     if (arrived(d, length, x)) break;
     if (it == max_iterations || !d.allFinite()) fail();
@@ -88,13 +88,13 @@ MatrixXd RungeKutta::tangents_of(double angle, double d_angle, double length, co
         if (tableau_.a(j, l) != 0) known += length * tableau_.a(j, l) * rhs.middleRows(l * n, n);
       own.noalias() -= jx * known;
       if (tableau_.a(j, j) != 0) jxdot += length * tableau_.a(j, j) * jx;
-      own = jxdot.partialPivLu().solve(own).eval();
+      own = core::DenseLu<double>(jxdot).solve(own);
     } else {
       for (Index l = 0; l < s; ++l) matrix.block(j * n, l * n, n, n) = length * tableau_.a(j, l) * jx;
       matrix.block(j * n, j * n, n, n) += jxdot;
     }
   }
-  if (!sequential) rhs = matrix.partialPivLu().solve(rhs).eval();
+  if (!sequential) rhs = core::DenseLu<double>(matrix).solve(rhs);
   MatrixXd out = MatrixXd::Identity(n, n + 2);
   for (Index j = 0; j < s; ++j) out += length * tableau_.b(j) * rhs.middleRows(j * n, n);
   out.col(n) += slopes * tableau_.b;

@@ -2,11 +2,11 @@
 // The matrices of one stage of a Runge-Kutta step, distributed in space.
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <memory>
 #include <optional>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::solve {
@@ -40,7 +40,7 @@ public:
 private:
   core::Matrix matrix_;
   core::LinearSolver solver_;
-  std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> dense_;
+  std::optional<core::DenseLu<double>> dense_;
   Eigen::VectorXd inverse_;
   Eigen::VectorX<PetscInt> column_;
   std::shared_ptr<const PortMatrix> blocks_;

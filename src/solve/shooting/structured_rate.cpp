@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "whirl/core/cost.hpp"
+#include "whirl/core/dense_lu.hpp"
 
 namespace whirl::solve {
 
@@ -99,7 +100,7 @@ bool StructuredRate::narrow() const {
 
 void StructuredRate::refresh() {
   point_.refresh();
-  mass_ = point_.blocks().l1.partialPivLu().inverse();
+  mass_ = core::DenseLu<double>(point_.blocks().l1).inverse();
   lead_ = mass_ * point_.blocks().b;
   linear_ = -mass_ * point_.blocks().l0;
 }

@@ -2,7 +2,6 @@
 // The rates dz/dt of a system that tells its structure, and their derivatives by the places of its films.
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <memory>
 #include <vector>
 

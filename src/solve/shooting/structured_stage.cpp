@@ -128,7 +128,7 @@ void StructuredStage::solve(double* r) const {
     x_.segment(end, film.reach) = Map<const VectorXd>(s + inner, film.reach) + part.ends.transpose() * interior;
     end += film.reach;
   }
-  x_ = border_.solve(x_).eval();
+  x_ = border_.solve(x_);
   Map<VectorXd>(r, n) = x_.head(n);
   end = n;
   for (std::size_t f = 0; f < parts_.size(); ++f) {

@@ -2,10 +2,10 @@
 // Implicit stages of systems that tell their structure.
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <vector>
 
 #include "solve/shooting/structured_rate.hpp"
+#include "whirl/core/dense_lu.hpp"
 
 namespace whirl::solve {
 
@@ -47,7 +47,7 @@ private:
   };
   const StructuredRate* rate_ = nullptr;
   std::vector<Part> parts_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> border_;
+  core::DenseLu<double> border_;
   mutable Eigen::VectorXd x_;
 };
 

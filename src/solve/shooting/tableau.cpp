@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 
@@ -49,7 +49,7 @@ Tableau classical() {
 // x_l = x_0 + H sum a(l,j) K_j inverts H K_j = sum_l slope(j,l) (x_l - x_0).
 Tableau radau_iia(int stages) {
   const Scheme s = make_scheme(stages, Points::radau);
-  const Eigen::MatrixXd a = s.slope.rightCols(stages).inverse();
+  const Eigen::MatrixXd a = core::DenseLu<double>(s.slope.rightCols(stages)).inverse();
   return {a, a.row(stages - 1).transpose(), s.c, s.order()};
 }
 

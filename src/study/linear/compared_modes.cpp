@@ -2,13 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/LU>
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/rotor/dense.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -71,10 +71,10 @@ Orbit orbit_from_rest(system::RotorSystem& system, const MatrixXd& films, int no
     const auto row = static_cast<std::size_t>(i);
     force(i) = omega * omega * Complex(system.forcing_cosine()[row], -system.forcing_sine()[row]);
   }
-  const VectorXcd forced = (a.cast<Complex>() + Complex(0, omega) * rates).partialPivLu().solve(force);
+  const VectorXcd forced = core::DenseLu<Complex>(a.cast<Complex>() + Complex(0, omega) * rates).solve(force);
   // theta = 1/s, and the free motion that makes the state at the beginning zero. A mode of infinite s ends at once.
-  const spectral::Eigenpairs pairs = spectral::eigenpairs(-a.partialPivLu().solve(rates));
-  const VectorXcd start = pairs.vectors.partialPivLu().solve(-forced.real().cast<Complex>());
+  const spectral::Eigenpairs pairs = spectral::eigenpairs(-core::DenseLu<double>(a).solve(rates));
+  const VectorXcd start = core::DenseLu<Complex>(pairs.vectors).solve(-forced.real().cast<Complex>());
   const MatrixXd shown = whole_states(system);
   const Index first = 2 * rotor::full_coordinate(node, rotor::Freedom::x);
   const double largest = pairs.values.cwiseAbs().maxCoeff();
@@ -135,13 +135,12 @@ WholeModes::WholeModes(system::RotorSystem& system, Vec x, int count) {
     const Complex shift = mode.lambda * (1 + 1e-9);
     Eigen::SparseMatrix<Complex> shifted = held + shift * rates;
     shifted.makeCompressed();
-    Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(shifted);
-    if (lu.info() != Eigen::Success)
-      throw core::NotConverged("an eigenvector of the whole shaft could not be computed");
+    const core::PivotedLu<Complex> lu(shifted);
+    if (!lu.regular()) throw core::NotConverged("an eigenvector of the whole shaft could not be computed");
     VectorXcd v = Eigen::Map<const VectorXcd>(mode.shape.data(), n), w = (rates * v).conjugate();
     for (int turn = 0; turn < 3; ++turn) {
-      v = lu.solve((rates * v).eval());
-      w = lu.transpose().solve((rates.transpose() * w).eval());
+      v = lu.solve(rates * v);
+      w = lu.solve_transposed(rates.transpose() * w);
       v /= v.norm();
       w /= w.norm();
     }
@@ -163,7 +162,7 @@ Complex WholeModes::energy(const VectorXcd& a, const VectorXcd& b) const {
 WholeModes::Errors WholeModes::errors(system::RotorSystem& reduced) const {
   problem::Structure& machine = *reduced.structure();
   const MatrixXd a = linearised(machine, films_), rates = machine.l1();
-  const spectral::Eigenpairs pairs = spectral::eigenpairs(-a.partialPivLu().solve(rates));
+  const spectral::Eigenpairs pairs = spectral::eigenpairs(-core::DenseLu<double>(a).solve(rates));
   std::vector<std::pair<double, Index>> order;
   for (Index k = 0; k < pairs.values.size(); ++k) {
     const Complex s = 1.0 / pairs.values(k);

@@ -1,8 +1,6 @@
 #include "study/linear/mode_loss.hpp"
 
-#include <Eigen/QR>
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,8 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/least_squares.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/spectral/dense.hpp"
 
 namespace whirl::study {
@@ -92,14 +92,13 @@ struct Vibration {
 // thousandth of the `fastest` are measured against that: stiff shafts leave their rounding to slow motions on soft
 // springs.
 void refine(const ComplexSparse& a, const ComplexSparse& b, double fastest, Vibration& v) {
-  Eigen::SparseLU<ComplexSparse> lu;
+  core::PivotedLu<Complex> lu;
   constexpr int most = 30;
   double change = 1, before = 2;
   for (int k = 0; k < most; ++k) {
     const ComplexSparse t = a + v.lambda * b;
-    if (k == 0) lu.analyzePattern(t);
-    lu.factorize(t);
-    if (lu.info() != Eigen::Success) return;  // the eigenvalue to the last digit
+    if (k == 0) lu.analyse(t);
+    if (!lu.factorise(t)) return;  // the eigenvalue to the last digit
     const Eigen::VectorXcd w = lu.solve(b * v.shape);
     const Complex move = 1.0 / v.shape.dot(w);  // u* u = 1
     v.lambda -= move;
@@ -117,10 +116,10 @@ void part(const ComplexSparse& a, const ComplexSparse& b, double eta, std::span<
   Eigen::MatrixXcd u(together[0].shape.size(), n);
   for (Eigen::Index k = 0; k < n; ++k) u.col(k) = together[static_cast<std::size_t>(k)].shape;
   const Complex beside = together[0].lambda + eta * std::abs(together[0].lambda) * Complex(0.31, 0.17);
-  Eigen::SparseLU<ComplexSparse> lu(a + beside * b);
-  if (lu.info() != Eigen::Success) throw core::NotConverged("modes with loss: the matrix beside them is singular");
-  const Eigen::MatrixXcd w = lu.solve(Eigen::MatrixXcd(b * u));
-  const spectral::Eigenpairs small = spectral::complex_eigenpairs(u.householderQr().solve(w));
+  const core::PivotedLu<Complex> lu(a + beside * b);
+  if (!lu.regular()) throw core::NotConverged("modes with loss: the matrix beside them is singular");
+  const Eigen::MatrixXcd w = lu.solve(b * u);
+  const spectral::Eigenpairs small = spectral::complex_eigenpairs(core::least_squares(u, w));
   for (Eigen::Index k = 0; k < n; ++k) {
     Vibration& v = together[static_cast<std::size_t>(k)];
     v.lambda = beside - 1.0 / small.values(k);

@@ -1,6 +1,7 @@
 #include "study/locus/amplitude_fit.hpp"
+#include "whirl/core/least_squares.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +18,7 @@ AtZeroAmplitude at_zero_amplitude(const std::vector<double>& amplitudes, const s
     return m;
   };
   const auto fit = [](const Eigen::MatrixXd& m, const Eigen::VectorXd& right) -> Eigen::VectorXd {
-    return m.colPivHouseholderQr().solve(right);
+    return core::least_squares(m, right);
   };
   const Eigen::Index terms = n < 4 ? 2 : 3, others = n > terms ? terms + 1 : terms - 1;
   const Eigen::MatrixXd m = powers(terms);

@@ -2,9 +2,9 @@
 // The part of collocation intervals that is the same for all of one length.
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <vector>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 #include "whirl/solve/cycle/thin_blocks.hpp"
 
@@ -82,7 +82,7 @@ private:
   Eigen::ArrayXd alpha_, beta_;
   Eigen::MatrixXd value_, integral_, value_integral_;  // V, D^-1, V D^-1 [m x m]
   Eigen::MatrixXd coupling_;                           // L0_ka/alpha [(n - k) x k]
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  core::DenseLu<double> lu_;
 };
 
 }  // namespace whirl::solve

@@ -2,10 +2,10 @@
 // Cycles of systems that are spread over ranks: what joins their intervals.
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <complex>
 #include <vector>
 
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/cycle/periodic_problem.hpp"
 #include "whirl/solve/cycle/time_groups.hpp"
@@ -168,7 +168,7 @@ private:
   Eigen::MatrixXd q_ends_, image_q_ends_;
   bool image_known_ = false, rough_image_ = false;  // the same on all ranks: sizes are not, some have no states
   double contraction_ = 0;                          // of the error of V by one iteration, as last seen
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+  core::DenseLu<double> small_;
   mutable long products_ = 0;
   int solves_ = 0;  // since the linearisation: many mean that the subspace is stale
 };

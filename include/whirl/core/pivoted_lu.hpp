@@ -1,0 +1,63 @@
+#pragma once
+// LU of sparse matrices with pivots, compiled once: Eigen's takes seconds of compiling in each file.
+
+#include <Eigen/SparseCore>
+#include <complex>
+#include <memory>
+
+namespace whirl::core {
+
+/// Rows are exchanged for the largest pivot, columns ordered for few entries (Eigen::SparseLU with COLAMD). Scalar:
+/// double or std::complex<double>. `SparseLu` is faster for films, whose matrices are real.
+template <class Scalar>
+class PivotedLu {
+public:
+  using Matrix = Eigen::SparseMatrix<Scalar>;
+
+  PivotedLu();
+  explicit PivotedLu(const Matrix& a);
+  PivotedLu(PivotedLu&&) noexcept;
+  PivotedLu& operator=(PivotedLu&&) noexcept;
+  ~PivotedLu();
+
+  /// The order of the columns, for all matrices with the entries of `a`.
+  void analyse(const Matrix& a);
+  /// False if A is singular; nothing can be solved then.
+  bool factorise(const Matrix& a);
+  bool compute(const Matrix& a) {
+    analyse(a);
+    return factorise(a);
+  }
+  [[nodiscard]] bool regular() const;
+  /// Of both factors.
+  [[nodiscard]] Eigen::Index entries() const;
+  /// The angle of det A [rad] but for whole turns: the determinant itself may overflow.
+  [[nodiscard]] double angle() const;
+
+  /// x = A^-1 y and x = A^-T y (not conjugated) of n x columns numbers each, which do not overlap.
+  void solve(const Scalar* y, Scalar* x, Eigen::Index columns) const;
+  void solve_transposed(const Scalar* y, Scalar* x, Eigen::Index columns) const;
+  template <class Y>
+  [[nodiscard]] typename Y::PlainObject solve(const Eigen::MatrixBase<Y>& y) const {
+    const auto& right = y.derived().eval();
+    typename Y::PlainObject x(right.rows(), right.cols());
+    solve(right.data(), x.data(), right.cols());
+    return x;
+  }
+  template <class Y>
+  [[nodiscard]] typename Y::PlainObject solve_transposed(const Eigen::MatrixBase<Y>& y) const {
+    const auto& right = y.derived().eval();
+    typename Y::PlainObject x(right.rows(), right.cols());
+    solve_transposed(right.data(), x.data(), right.cols());
+    return x;
+  }
+
+private:
+  struct Factors;
+  std::unique_ptr<Factors> factors_;
+};
+
+extern template class PivotedLu<double>;
+extern template class PivotedLu<std::complex<double>>;
+
+}  // namespace whirl::core
