@@ -13,7 +13,7 @@ namespace {
 
 constexpr double least_seconds = 0.5;  // between two files
 
-constexpr int journal_format = 3;
+constexpr int journal_format = 4;
 constexpr std::int64_t as_rows = -1;  // the size of a vector that is a dataset of its own
 
 std::string name_of_rows(std::size_t k) {

@@ -48,7 +48,7 @@ void put_criticals(io::Group& table, const io::StudySummary& summary) {
     return name;
   };
   const auto put = [&](const std::string& name, io::Quantity CriticalSpeed::*member, const std::string& unit,
-                       const std::string& text, bool with_bar = true) {
+                       const std::string& text) {
     std::vector<double> values, bars;
     for (const CriticalSpeed& c : all) {
       const io::Quantity& q = c.*member;
@@ -58,7 +58,7 @@ void put_criticals(io::Group& table, const io::StudySummary& summary) {
       bars.push_back(unit == "rad/s" ? deck::number_to_si(size, q.unit) : size);
     }
     table.put(named(name), values, unit, text);
-    if (with_bar) table.put(named(name + "_uncertainty"), bars, unit, "of the column before");
+    table.put(named(name + "_uncertainty"), bars, unit, "of the column before");
   };
   const auto put_words = [&](const std::string& name, std::string CriticalSpeed::*member, const std::string& text) {
     std::vector<std::string> words;

@@ -216,7 +216,8 @@ std::optional<CrossingPoint> located_by(ShaftMode guide, double known, const Cro
   std::array<double, 2> s{c.s0, c.s1}, f{c.f0, c.f1};
   int lost = 0;
   std::size_t moved = 2;
-  double at = 0;
+  double at = 0, before = c.f1;  // what the last look found
+  const double slope = std::abs((c.f1 - c.f0) / (c.s1 - c.s0));
   for (int k = 0; k < most && lost <= most_lost; ++k) {
     // Where the mode is not found, the next look is half as far from where it was.
     at = lost > 0                  ? (at + known) / 2
@@ -236,7 +237,8 @@ std::optional<CrossingPoint> located_by(ShaftMode guide, double known, const Cro
       return CrossingPoint{at, guide.lambda, guide.both()};
     // Equilibria are known to a tolerance, which may leave more than that.
     if (!may_jump && step < 1e-6 * at && std::abs(here) < 1e-4 * scale)
-      return CrossingPoint{at, guide.lambda, guide.both()};
+      return CrossingPoint{at, guide.lambda, guide.both(), std::max(std::abs(here), std::abs(before)) / slope};
+    before = here;
     // An end that stays is halved (Illinois).
     const std::size_t moves = here * c.f0 > 0 ? 0 : 1;
     if (moves == moved) f[1 - moves] /= 2;
@@ -245,7 +247,8 @@ std::optional<CrossingPoint> located_by(ShaftMode guide, double known, const Cro
     f[moves] = here;
     // A real part may jump across the border, as that of hysteresis does where the shaft turns as fast as it whirls. A
     // frequency does not: there the mode was taken for another one.
-    if (may_jump && std::abs(s[1] - s[0]) < 1e-5 * at) return CrossingPoint{at, guide.lambda, guide.both()};
+    if (may_jump && std::abs(s[1] - s[0]) < 1e-5 * at)
+      return CrossingPoint{at, guide.lambda, guide.both(), std::abs(s[1] - s[0])};
   }
   return {};
 }
@@ -255,7 +258,7 @@ std::optional<CrossingPoint> located_by(ShaftMode guide, double known, const Cro
 CrossingPoint locate(const Crossing& c, const std::function<std::vector<ShaftMode>(double)>& modes_at) {
   if (const auto found = located_by(c.guide, c.s1, c, modes_at)) return *found;
   if (const auto found = located_by(c.before, c.s0, c, modes_at)) return *found;
-  return {(c.s0 + c.s1) / 2, c.guide.lambda, c.guide.both(), std::abs(c.s1 - c.s0) / 2};
+  return {(c.s0 + c.s1) / 2, c.guide.lambda, c.guide.both(), std::abs(c.s1 - c.s0) / 2, false};
 }
 
 std::vector<bool> found_twice(const std::vector<Station>& stations, const std::vector<Crossing>& crossings,
@@ -274,7 +277,8 @@ std::vector<bool> found_twice(const std::vector<Station>& stations, const std::v
     if (c.border != Border::critical) continue;
     for (std::size_t k = 0; k < i && !out[i]; ++k)
       out[i] = crossings[k].border == Border::critical && crossings[k].station == c.station &&
-               std::abs(points[k].lambda - points[i].lambda) <= same * std::abs(points[i].lambda) &&
+               std::abs(points[k].lambda - points[i].lambda) <=
+                   same * std::abs(points[i].lambda) + points[k].left + points[i].left &&
                spectral::mac(points[k].shape, points[i].shape) > alike;
     if (out[i])
       with_twins.insert(c.station);

@@ -75,7 +75,8 @@ struct CrossingPoint {
   double speed = 0;
   std::complex<double> lambda = 0;
   std::vector<std::complex<double>> shape{};  ///< as ShaftMode::both()
-  double left = 0;  ///< how far the border may be from there, if the mode could not be followed to it [rad/s]
+  double left = 0;                            ///< how far the border may be from there [rad/s]
+  bool followed = true;  ///< false: between two stations, and the mode was not found nearer to the border
 };
 /// Secants between both ends, each with the modes at that speed, of which the one like the mode found last is taken,
 /// beginning with that at s1; where this loses it, with that at s0.

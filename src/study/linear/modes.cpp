@@ -208,8 +208,8 @@ StudyResult Modes::run(Context& context) {
       return there;
     });
     // Other ranks and resumed runs see what is returned, and nothing else.
-    std::vector<double> out{at.speed, at.lambda.real(), at.lambda.imag(), at.left,
-                            static_cast<double>(missed_on_the_way.size())};
+    std::vector<double> out{at.speed, at.lambda.real(),        at.lambda.imag(),
+                            at.left,  at.followed ? 1.0 : 0.0, static_cast<double>(missed_on_the_way.size())};
     out.insert(out.end(), missed_on_the_way.begin(), missed_on_the_way.end());
     for (const auto& v : at.shape) out.insert(out.end(), {v.real(), v.imag()});
     return out;
@@ -224,9 +224,9 @@ StudyResult Modes::run(Context& context) {
   std::vector<CrossingPoint> points;
   std::vector<double> errors;  // of the speeds
   for (const std::vector<double>& r : refined) {
-    points.push_back({r[0], {r[1], r[2]}, {}, r[3]});
-    auto at = r.begin() + 5;
-    for (const auto end = at + static_cast<std::ptrdiff_t>(r[4]); at != end; ++at) missed.add(static_cast<int>(*at));
+    points.push_back({r[0], {r[1], r[2]}, {}, r[3], r[4] != 0});
+    auto at = r.begin() + 6;
+    for (const auto end = at + static_cast<std::ptrdiff_t>(r[5]); at != end; ++at) missed.add(static_cast<int>(*at));
     for (; at != r.end(); at += 2) points.back().shape.emplace_back(at[0], at[1]);
   }
   std::vector<LostCrossings> may_be_missing;
@@ -237,11 +237,12 @@ StudyResult Modes::run(Context& context) {
     const auto bar = bars.at(c.guide.id, points[i].speed);
     const bool critical = c.border == Border::critical;
     errors.push_back(points[i].left + bar[critical ? 1 : 0] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)));
-    if (points[i].left > 0)
-      summary.warnings.push_back(fmt::format(
-          "mode {} {} between {:.6g} and {:.6g} {}, but could not be followed to where: more points show it",
-          c.guide.id, critical ? "has a critical speed" : "becomes stable or unstable", deck::from_si(c.s0, unit),
-          deck::from_si(c.s1, unit), unit));
+    if (!points[i].followed)
+      summary.warnings.push_back(
+          fmt::format("mode {} {} between {:.6g} and {:.6g} {}. Its shape could not be followed to that speed; more "
+                      "'points' locate it",
+                      c.guide.id, critical ? "has a critical speed" : "becomes stable or unstable",
+                      deck::from_si(c.s0, unit), deck::from_si(c.s1, unit), unit));
     if (critical && !twice[i])
       criticals.push_back({points[i].speed, spectral::log_decrement(points[i].lambda), c.guide.id, errors[i], bar[2]});
   }

@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <functional>
+#include <map>
+
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"

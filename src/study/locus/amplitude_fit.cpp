@@ -1,9 +1,10 @@
 #include "study/locus/amplitude_fit.hpp"
-#include "whirl/core/least_squares.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "whirl/core/least_squares.hpp"
 
 namespace whirl::study {
 
