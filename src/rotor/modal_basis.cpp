@@ -69,14 +69,18 @@ PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction) {
   // The pseudo-inverse of at_masters moves the masters; what it does not reach, an eigenspace of the projector
   // I - pseudo at_masters, holds them.
   const Eigen::Index all_modes = modes.rows.cols();
-  const Eigen::MatrixXd pseudo = core::least_squares(at_masters, Eigen::MatrixXd::Identity(n, n));
-  const Eigen::MatrixXd beside = Eigen::MatrixXd::Identity(all_modes, all_modes) - pseudo * at_masters;
+  Eigen::MatrixXd pseudo;
   core::SymmetricPairs projector;
   core::agree(comm, [&] {
+    pseudo = core::least_squares(at_masters, Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd beside = Eigen::MatrixXd::Identity(all_modes, all_modes) - pseudo * at_masters;
     projector = core::symmetric_pairs((beside + beside.transpose()) / 2, "what holds the masters");
     if (projector.values.sum() > static_cast<double>(all_modes - n) + 0.5)
       throw core::InputError("the modes of the shaft do not tell its masters apart: more modes, or fewer masters");
   });
+  // Rounding decides which basis of that space it is: all ranks take that of the first.
+  core::share(comm, pseudo.data(), static_cast<std::size_t>(pseudo.size()));
+  core::share(comm, projector.vectors.data(), static_cast<std::size_t>(projector.vectors.size()));
   const Eigen::MatrixXd held = modes.rows * projector.vectors.rightCols(all_modes - n);
   PlanarBasis basis;
   basis.offset = Eigen::VectorXd::Zero(end - begin);
