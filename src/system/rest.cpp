@@ -3,6 +3,7 @@
 #include <petscksp.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
@@ -58,12 +59,15 @@ double RotorSystem::Rest::left_over() {
 bool RotorSystem::Rest::find() {
   if (found_ && without_->parameter() == system_.parameter()) return false;
   const bool linear = is_linear(system_.train_);
+  const bool known = std::exchange(found_, false);  // true again at the end
   rate_.clear();
   without_->set_parameter(system_.parameter());
   // Supports that do not know the speed hold the machine at one place: a run-up asks at every stage of every step.
   constexpr double rounding = 4;
-  if (found_ && linear && left_over() <= rounding * left_) return false;
-  found_ = false;
+  if (known && linear && left_over() <= rounding * left_) {
+    found_ = true;
+    return false;
+  }
   core::Vector x;
   try {
     const RestFinder* finder = system_.train_.rest;
