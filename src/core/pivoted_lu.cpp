@@ -55,6 +55,11 @@ bool PivotedLu<Scalar>::regular() const {
 }
 
 template <class Scalar>
+Index PivotedLu<Scalar>::size() const {
+  return factors_->rows();
+}
+
+template <class Scalar>
 Index PivotedLu<Scalar>::entries() const {
   return factors_->nnzL() + factors_->nnzU();
 }
@@ -68,7 +73,7 @@ template <class Scalar>
 void PivotedLu<Scalar>::solve(const Scalar* y, Scalar* x, Index columns) const {
   using Vector = Eigen::Matrix<Scalar, Dynamic, 1>;
   using Columns = Eigen::Matrix<Scalar, Dynamic, Dynamic>;
-  const Index n = factors_->rows();
+  const Index n = size();
   if (columns == 1)
     Map<Vector>(x, n) = factors_->solve(Map<const Vector>(y, n));
   else
@@ -78,7 +83,7 @@ void PivotedLu<Scalar>::solve(const Scalar* y, Scalar* x, Index columns) const {
 template <class Scalar>
 void PivotedLu<Scalar>::solve_transposed(const Scalar* y, Scalar* x, Index columns) const {
   using Columns = Eigen::Matrix<Scalar, Dynamic, Dynamic>;
-  const Index n = factors_->rows();
+  const Index n = size();
   Map<Columns>(x, n, columns) = factors_->transpose().solve(Map<const Columns>(y, n, columns));
 }
 

@@ -1,7 +1,8 @@
 #include "film/column_chain.hpp"
-#include "whirl/core/dense_lu.hpp"
 
 #include <algorithm>
+
+#include "whirl/core/dense_lu.hpp"
 
 namespace whirl::film {
 

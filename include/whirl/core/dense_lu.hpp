@@ -4,10 +4,13 @@
 #include <Eigen/LU>
 #include <complex>
 
+#include "whirl/core/error.hpp"
+
 namespace whirl::core {
 
 /// P A = L U of a square matrix, rows exchanged for the largest pivot (Eigen::PartialPivLU). Scalar: double or
-/// std::complex<double>. A singular matrix gives answers that are not finite.
+/// std::complex<double>. Answers of a singular matrix
+/// mean nothing.
 template <class Scalar>
 class DenseLu {
 public:
@@ -38,6 +41,7 @@ private:
   template <class Plain>
   [[nodiscard]] Plain answer(void (DenseLu::*by)(const Scalar*, Scalar*, Eigen::Index) const, const Plain& y) const {
     static_assert(!Plain::IsRowMajor, "columns one behind the other");
+    require(y.rows() == size(), "right-hand sides of the size of the matrix");
     Plain x(y.rows(), y.cols());
     (this->*by)(y.data(), x.data(), y.cols());
     return x;

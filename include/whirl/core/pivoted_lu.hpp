@@ -5,6 +5,8 @@
 #include <complex>
 #include <memory>
 
+#include "whirl/core/error.hpp"
+
 namespace whirl::core {
 
 /// Rows are exchanged for the largest pivot, columns ordered for few entries (Eigen::SparseLU with COLAMD). Scalar:
@@ -29,6 +31,7 @@ public:
     return factorise(a);
   }
   [[nodiscard]] bool regular() const;
+  [[nodiscard]] Eigen::Index size() const;
   /// Of both factors.
   [[nodiscard]] Eigen::Index entries() const;
   /// The angle of det A [rad] but for whole turns: the determinant itself may overflow.
@@ -40,6 +43,7 @@ public:
   template <class Y>
   [[nodiscard]] typename Y::PlainObject solve(const Eigen::MatrixBase<Y>& y) const {
     const auto& right = y.derived().eval();
+    require(right.rows() == size(), "right-hand sides of the size of the matrix");
     typename Y::PlainObject x(right.rows(), right.cols());
     solve(right.data(), x.data(), right.cols());
     return x;
@@ -47,6 +51,7 @@ public:
   template <class Y>
   [[nodiscard]] typename Y::PlainObject solve_transposed(const Eigen::MatrixBase<Y>& y) const {
     const auto& right = y.derived().eval();
+    require(right.rows() == size(), "right-hand sides of the size of the matrix");
     typename Y::PlainObject x(right.rows(), right.cols());
     solve_transposed(right.data(), x.data(), right.cols());
     return x;

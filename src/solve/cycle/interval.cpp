@@ -1,5 +1,5 @@
-
 #include "whirl/solve/cycle/interval.hpp"
+
 #include "whirl/core/dense_lu.hpp"
 
 namespace whirl::solve {
