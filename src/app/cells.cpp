@@ -15,24 +15,6 @@ std::string number(std::optional<double> value) {
   return fmt::format("{:.{}f}", *value, std::max(0, 4 - before));
 }
 
-std::string with_uncertainty(double value, double uncertainty, const std::string& unit) {
-  const std::string tail = unit.empty() || unit == "1" ? "" : " " + unit;
-  if (!std::isfinite(value)) return "unknown";
-  const auto places = [](double x) { return -static_cast<int>(std::floor(std::log10(std::abs(x)))); };
-  const int most = value == 0 ? 6 : 6 + places(value);
-  if (!std::isfinite(uncertainty) || !(uncertainty > 0)) return fmt::format("{:.7g}{}", value, tail);
-  const int size = -places(std::max(std::abs(value), uncertainty));
-  if (size < -4 || size > 6) {
-    const double unit_of_size = std::pow(10, size);
-    return fmt::format("({})e{:+03d}{}", with_uncertainty(value / unit_of_size, uncertainty / unit_of_size, ""), size,
-                       tail);
-  }
-  const int wanted = 1 + places(uncertainty);
-  if (wanted > most) return fmt::format("{:.7g} +- {:.1g}{}", value, uncertainty, tail);
-  const int decimals = std::max(0, wanted);
-  return fmt::format("{:.{}f} +- {:.{}f}{}", value, decimals, uncertainty, decimals, tail);
-}
-
 std::string in_usual_unit(const io::Quantity& q) {
   const auto bar = q.more.find("uncertainty");
   const auto shown = [&](double value, double factor, const std::string& unit) {

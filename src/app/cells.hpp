@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "whirl/io/rounded.hpp"
 #include "whirl/io/summary.hpp"
 
 namespace whirl::app {
@@ -16,8 +17,7 @@ inline constexpr std::size_t widest_line = 100;
 /// Four digits; "-" if there is none.
 [[nodiscard]] std::string number(std::optional<double> value);
 
-/// "5021.4 +- 6.9 rpm": two digits of the uncertainty, seven of the value at most; the unit 1 is not written.
-[[nodiscard]] std::string with_uncertainty(double value, double uncertainty, const std::string& unit);
+using io::with_uncertainty;
 
 /// The value times `factor` with two digits of its bar, else four digits; "-" if there is none.
 [[nodiscard]] std::string cell_of(const io::Quantity& q, double factor = 1);

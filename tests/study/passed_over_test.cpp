@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "study/linear/endless.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -27,6 +29,14 @@ TEST(PassedOver, IsNoRoundingAndNothingWithoutAnAnswer) {
   EXPECT_TRUE(said_of({{1e-6, 1e-16}, {1e-14, 1e-14}}).empty());
   EXPECT_EQ(said_of({{1e-6, 1e-13}, {1e-14, 1e-14}}).size(), 1U);
   EXPECT_TRUE(said_of({}).empty());
+}
+
+TEST(Endless, AreToldWithTheDigitsThatAreKnown) {
+  io::StudySummary summary;
+  warn_of_endless(summary, {{5366.051, {true}}}, {17}, {{"a.from.a", "m/N"}}, "rad/s");
+  ASSERT_EQ(summary.warnings.size(), 1U);
+  EXPECT_TRUE(summary.warnings[0].starts_with("undamped resonances: 5366 +- 17 rad/s (a.from.a). "))
+      << summary.warnings[0];
 }
 
 }  // namespace

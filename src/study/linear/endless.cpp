@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "whirl/deck/units.hpp"
+#include "whirl/io/rounded.hpp"
 
 namespace whirl::study {
 
@@ -45,9 +46,9 @@ void warn_of_endless(io::StudySummary& summary, const std::vector<Endless>& endl
     for (std::size_t e = 0; e < names.size(); ++e)
       if (endless[k].responses[e]) of.push_back(names[e].name);
     const double bar = bars.empty() ? io::no_value : bars[k];
-    all.push_back(fmt::format("{:.7g}{} {} ({}{})", deck::from_si(endless[k].frequency, unit),
-                              std::isfinite(bar) ? fmt::format(" +- {:.1g}", deck::from_si(bar, unit)) : "", unit,
-                              of.front(), of.size() > 1 ? fmt::format(" and {} more", of.size() - 1) : ""));
+    all.push_back(fmt::format(
+        "{} ({}{})", io::with_uncertainty(deck::from_si(endless[k].frequency, unit), deck::from_si(bar, unit), unit),
+        of.front(), of.size() > 1 ? fmt::format(" and {} more", of.size() - 1) : ""));
   }
   if (all.empty()) return;
   const std::size_t n = std::min(shown, all.size());
