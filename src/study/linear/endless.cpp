@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <map>
 
+#include "study/growth.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/rounded.hpp"
 
@@ -30,11 +33,62 @@ std::vector<Endless> endless_of(const std::vector<Resonance>& resonances, std::s
   return out;
 }
 
+Between between(const std::vector<double>& frequencies, const std::vector<std::complex<double>>& eigenvalues,
+                const ResonanceSearch& search,
+                const std::function<std::vector<Transfer>(const std::vector<double>&)>& at) {
+  Between out{narrow_resonances(eigenvalues, frequencies, search), {}, {}};
+  std::erase_if(out.narrow, [](const Resonance& r) { return r.undamped; });
+  const std::vector<Resonance> undamped =
+      undamped_resonances(eigenvalues, frequencies.front(), frequencies.back(), search);
+  std::vector<double> beside;
+  for (const Resonance& r : out.narrow) beside.push_back(around(r)[1]);
+  for (const Resonance& r : undamped)
+    for (const double frequency : beside_pole(r)) beside.push_back(frequency);
+  out.at_narrow = at(beside);
+  out.endless = endless_of(undamped, std::span(out.at_narrow).subspan(out.narrow.size()));
+  out.at_narrow.resize(out.narrow.size());
+  return out;
+}
+
+std::vector<double> packed_spectrum(const solve::Stability& found) {
+  const std::vector<double> growth = packed(growth_of(found));
+  std::vector<double> out{static_cast<double>(growth.size())};
+  out.insert(out.end(), growth.begin(), growth.end());
+  for (const std::complex<double> v : found.values) out.insert(out.end(), {v.real(), v.imag()});
+  return out;
+}
+
+std::vector<double> growth_in(const std::vector<double>& spectrum) {
+  if (spectrum.empty()) return {};
+  return {spectrum.begin() + 1, spectrum.begin() + 1 + static_cast<std::ptrdiff_t>(spectrum.front())};
+}
+
+std::vector<std::complex<double>> eigenvalues_in(const std::vector<double>& spectrum) {
+  std::vector<std::complex<double>> out;
+  if (spectrum.empty()) return out;
+  for (std::size_t k = 1 + static_cast<std::size_t>(spectrum.front()); k + 1 < spectrum.size(); k += 2)
+    out.emplace_back(spectrum[k], spectrum[k + 1]);
+  return out;
+}
+
 double nearest_to(double frequency, const std::vector<std::complex<double>>& eigenvalues) {
   double found = io::no_value;
   for (const std::complex<double> v : eigenvalues)
     if (v.imag() > 0 && !(std::abs(std::abs(v) - frequency) >= std::abs(found - frequency))) found = std::abs(v);
   return found;
+}
+
+bool put_endless(io::StudySummary& summary, const ResponseName& name, std::size_t response,
+                 const std::vector<Endless>& endless, const std::vector<double>& bars, const std::string& unit) {
+  for (std::size_t k = 0; k < endless.size(); ++k) {
+    if (!endless[k].responses[response]) continue;
+    std::map<std::string, double> bar;
+    if (!bars.empty()) bar["uncertainty"] = deck::from_si(bars[k], unit);
+    summary.set(name.name + ".largest", std::numeric_limits<double>::infinity(), name.unit);
+    summary.set(name.name + ".largest_at", deck::from_si(endless[k].frequency, unit), unit, bar);
+    return true;
+  }
+  return false;
 }
 
 void warn_of_endless(io::StudySummary& summary, const std::vector<Endless>& endless, const std::vector<double>& bars,

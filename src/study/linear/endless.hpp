@@ -3,6 +3,8 @@
 
 #include <array>
 #include <complex>
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "study/linear/resonances.hpp"
 #include "study/linear/transfer_points.hpp"
 #include "whirl/io/summary.hpp"
+#include "whirl/solve/branch/continuation.hpp"
 
 namespace whirl::study {
 
@@ -28,8 +31,31 @@ struct Endless {
 [[nodiscard]] std::vector<Endless> endless_of(const std::vector<Resonance>& resonances,
                                               std::span<const Transfer> beside);
 
+/// Resonances between frequencies: damped ones that these pass over, with the transfer functions beside their tops
+/// (empty where there is no answer), and undamped ones that some function has a pole at.
+struct Between {
+  std::vector<Resonance> narrow;
+  std::vector<Transfer> at_narrow;
+  std::vector<Endless> endless;
+};
+/// Among the eigenvalues [1/s] of the machine; `at`: its transfer functions at some frequencies [rad/s].
+[[nodiscard]] Between between(const std::vector<double>& frequencies,
+                              const std::vector<std::complex<double>>& eigenvalues, const ResonanceSearch& search,
+                              const std::function<std::vector<Transfer>(const std::vector<double>&)>& at);
+
+/// What grows about an equilibrium, as packed(), and all eigenvalues [1/s], in numbers that ranks and pieces of a
+/// checkpoint hold; the other two take these apart, and find nothing in none.
+[[nodiscard]] std::vector<double> packed_spectrum(const solve::Stability& found);
+[[nodiscard]] std::vector<double> growth_in(const std::vector<double>& spectrum);
+[[nodiscard]] std::vector<std::complex<double>> eigenvalues_in(const std::vector<double>& spectrum);
+
 /// The frequency of an undamped resonance among the eigenvalues [1/s] on another mesh: the nearest one; NaN of none.
 [[nodiscard]] double nearest_to(double frequency, const std::vector<std::complex<double>>& eigenvalues);
+
+/// Whether a response grows without limit; puts its largest value, which is infinite then, and the resonance that it is
+/// at, in `unit`. `bars`: as of warn_of_endless().
+bool put_endless(io::StudySummary& summary, const ResponseName& name, std::size_t response,
+                 const std::vector<Endless>& endless, const std::vector<double>& bars, const std::string& unit);
 
 /// Says where transfer functions grow without limit, with `bars` [rad/s] of these frequencies; none: not known.
 void warn_of_endless(io::StudySummary& summary, const std::vector<Endless>& endless, const std::vector<double>& bars,

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 
 #include "study/bars/film_mesh.hpp"
@@ -113,17 +111,9 @@ public:
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
-  // What grows about the equilibrium, packed, behind its length; then all eigenvalues. Nothing if these could not be
-  // computed. growth_in() and eigenvalues_in() take it apart.
+  // As packed_spectrum(); nothing if there is none.
   std::vector<double> eigenvalues() {
-    return answer_of([&] {
-      const solve::Stability found = equilibrium_stability(system_, walker_.at(options_.speed.value));
-      const std::vector<double> growth = packed(growth_of(found));
-      std::vector<double> all{static_cast<double>(growth.size())};
-      all.insert(all.end(), growth.begin(), growth.end());
-      append(all, found.values);
-      return all;
-    });
+    return answer_of([&] { return packed_spectrum(equilibrium_stability(system_, walker_.at(options_.speed.value))); });
   }
 
 private:
@@ -174,19 +164,6 @@ private:
   double last_ = 0;
   Way::Films last_films_ = Way::Films::whole;
 };
-
-std::vector<double> growth_in(const std::vector<double>& eigen) {
-  if (eigen.empty()) return {};
-  return {eigen.begin() + 1, eigen.begin() + 1 + static_cast<std::ptrdiff_t>(eigen.front())};
-}
-
-std::vector<Complex> eigenvalues_in(const std::vector<double>& eigen) {
-  std::vector<Complex> out;
-  if (eigen.empty()) return out;
-  for (std::size_t k = 1 + static_cast<std::size_t>(eigen.front()); k + 1 < eigen.size(); k += 2)
-    out.emplace_back(eigen[k], eigen[k + 1]);
-  return out;
-}
 
 // Largest difference over the frequencies, relative to the matrix of the whole machine there, and where it is.
 struct Difference {
@@ -332,23 +309,16 @@ StudyResult FrequencyResponse::run(Context& context) {
                fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
                "No vibration settles into these transfer functions", summary);
   }
-  const std::vector<Complex> eigenvalues = eigenvalues_in(eigen);
-  const ResonanceSearch search = search_of(context.machine.rotor, 0);
-  std::vector<Resonance> narrow = narrow_resonances(eigenvalues, frequencies, search);
-  std::erase_if(narrow, [](const Resonance& r) { return r.undamped; });
-  const std::vector<Resonance> undamped =
-      undamped_resonances(eigenvalues, frequencies.front(), frequencies.back(), search);
   // Nobody asked for these frequencies: where one has no answer the study goes on.
-  std::vector<double> beside;
-  for (const Resonance& r : narrow) beside.push_back(around(r)[1]);
-  for (const Resonance& r : undamped)
-    for (const double frequency : beside_pole(r)) beside.push_back(frequency);
-  const auto there = [&](std::size_t i) { return answer_of([&] { return pack(machine.at({"machine"}, beside[i])); }); };
-  std::vector<Transfer> at_beside;
-  for (const auto& flat : distribute(layout, beside.size(), there, pieces, "resonance", machine.trail()))
-    at_beside.push_back(unpack_transfer(flat));
-  const std::vector<Endless> endless = endless_of(undamped, std::span(at_beside).subspan(narrow.size()));
-  at_beside.resize(narrow.size());
+  const auto beside = [&](const std::vector<double>& at) {
+    const auto one = [&](std::size_t i) { return answer_of([&] { return pack(machine.at({"machine"}, at[i])); }); };
+    std::vector<Transfer> out;
+    for (const auto& flat : distribute(layout, at.size(), one, pieces, "resonance", machine.trail()))
+      out.push_back(unpack_transfer(flat));
+    return out;
+  };
+  const auto [narrow, at_narrow, endless] =
+      between(frequencies, eigenvalues_in(eigen), search_of(context.machine.rotor, 0), beside);
   const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0], endless);
 
   auto& group = results.group();
@@ -387,15 +357,8 @@ StudyResult FrequencyResponse::run(Context& context) {
         table.put("phase", column[3], "rad", "of the output ahead of the input");
         if (w > 0) continue;
         const std::size_t e = o * inputs + i, most = largest_of(all[0], e);
-        const auto grows =
-            std::ranges::find_if(endless, [&](const Endless& u) { return static_cast<bool>(u.responses[e]); });
-        std::map<std::string, double> bar;
-        if (grows != endless.end()) {
-          const auto place = static_cast<std::size_t>(grows - endless.begin());
-          if (!bars.undamped.empty()) bar["uncertainty"] = deck::from_si(bars.undamped[place], unit);
-          summary.set(name + ".largest", std::numeric_limits<double>::infinity(), of);
-          summary.set(name + ".largest_at", deck::from_si(grows->frequency, unit), unit, bar);
-        } else {
+        if (!put_endless(summary, names.back(), e, endless, bars.undamped, unit)) {
+          std::map<std::string, double> bar;
           if (!bars.at.empty()) bar["uncertainty"] = bars.of(e, most);
           summary.set(name + ".largest", column[2][most], of, bar);
           summary.set(name + ".largest_at", deck::from_si(frequencies[most], unit), unit);
@@ -420,7 +383,7 @@ StudyResult FrequencyResponse::run(Context& context) {
     summary.set(ways[w].name + ".difference_at", deck::from_si(apart.frequency, unit), unit);
   }
   warn_of_endless(summary, endless, bars.undamped, names, unit);
-  warn_of_passed_over(summary, narrow, at_beside, frequencies, all[0], names, unit);
+  warn_of_passed_over(summary, narrow, at_narrow, frequencies, all[0], names, unit);
   if (!silent.empty())
     summary.warnings.push_back(
         fmt::format("no answer but rounding, below 1e-12 of the largest motion of the machine: {}. They are zero, and "
