@@ -51,6 +51,29 @@ TEST(Kept, AResponseWhoseBarsFail) {
   EXPECT_EQ(summary.warnings.size(), 1U);
 }
 
+// Three speeds that stand too far apart for a narrow peak tell nothing of its height on either mesh.
+TEST(Kept, ADampedPeakOfUnknownHeightHasNoBar) {
+  const PutPeak put = [](io::StudySummary& to, const std::string& head, double speed, double height, double factor) {
+    to.set(head + "speed", speed, "rad/s");
+    to.set(head + "height", height, "m");
+    to.set(head + "factor", factor, "1");
+  };
+  const std::vector<std::vector<double>> told{{0.5}, {1}, {0.5}}, lost{{0.1}, {0.9}, {0.2}};
+  for (const bool here : {false, true}) {
+    io::StudySummary summary;
+    put(summary, "peak.", 280, 8e-5, 800);
+    std::vector<NamedPeak> peaks{{"peak.", 0, 280, 8e-5, 800, {1e-5, 1e-5, 1e-3}}};
+    put_response_bars(summary, {{Axis::around, {0.5, 1}, 2}, {Axis::around, {2, 1}, 0.5}}, {}, peaks, put,
+                      [&](const FilmMesh& mesh, const auto&, const auto&) -> MeshResponse {
+                        return {(mesh.spacing == 1) == here ? lost : told, {}};
+                      });
+    EXPECT_TRUE(std::isfinite(summary.values[0].second.more.at("uncertainty"))) << here;
+    EXPECT_TRUE(std::isnan(summary.values[1].second.more.at("uncertainty"))) << here;
+    EXPECT_TRUE(std::isnan(summary.values[2].second.more.at("uncertainty"))) << here;
+    EXPECT_FALSE(peaks.front().vanishes);
+  }
+}
+
 // Two revolutions of a circle, and half of one that runs away: neither its size nor its spectrum knows the last one.
 TEST(Kept, AMotionKnowsWholeRevolutionsOnly) {
   MotionOptions options;

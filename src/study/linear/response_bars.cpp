@@ -111,13 +111,18 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
           p.vanishes = true;
           continue;
         }
-        // An undamped peak is one on every mesh.
-        const bool undamped = std::isinf(p.height);
-        put(there, p.head, p.speed + b.speed - a.speed, undamped ? p.height : p.height + b.height - a.height,
-            undamped ? p.amplification : p.amplification * b.quality / a.quality);
+        // A peak too narrow for a height is one on every mesh. Of another one nothing is known where the three speeds
+        // do not see it on both meshes.
+        double height = p.height, factor = p.amplification;
+        if (std::isfinite(p.height)) {
+          const bool told = std::isfinite(a.height) && std::isfinite(b.height);
+          height = told ? p.height + b.height - a.height : io::no_value;
+          factor = told ? p.amplification * b.quality / a.quality : io::no_value;
+        }
+        put(there, p.head, p.speed + b.speed - a.speed, height, factor);
         double lowest = 0;
         for (std::size_t k = first; k < saddle; ++k) lowest = std::max(lowest, moved.height[k][p.place]);
-        if (saddle > first) there.set(p.head + prominence, p.height + b.height - a.height - lowest, "m");
+        if (saddle > first) there.set(p.head + prominence, height - lowest, "m");
       }
     });
   bars.write([&](const std::string& name, double value) { return location_of(peaks, name, value); });
