@@ -117,7 +117,7 @@ TEST(ResponsePeaks, WhyThereIsNoFactorIsSaid) {
   EXPECT_NE(last.no_factor.find("before the range ends"), std::string::npos) << last.no_factor;
 }
 
-// Lines between samples cut no flank: between neighbours within ten half widths they leave less than a tenth of the
+// Lines between samples cut no flank: between neighbours within twenty half widths they leave less than a tenth of the
 // peak.
 TEST(ResponsePeaks, FlanksHaveSamplesEnoughForLines) {
   std::vector<double> speeds{200, 240, 270, 310, 360};
@@ -142,6 +142,22 @@ TEST(ResponsePeaks, FlanksHaveSamplesEnoughForLines) {
   std::vector<double> more;
   ask_for_flanks(c, c.tops().front(), more);
   EXPECT_TRUE(more.empty());
+}
+
+// Samples of other places that stand about 1/2 half width take the place of that one, and leave no gap behind it.
+TEST(ResponsePeaks, FlanksKeepTheRatioOfTheirSamples) {
+  constexpr double half = top_speed / (2 * quality);
+  for (const double known : {0.29, 0.4, 0.6, 0.95}) {
+    std::vector<double> speeds{200, top_speed - half, top_speed, top_speed + known * half, top_speed + half, 360};
+    ResponseCurve c = sampled(speeds);
+    ask_for_flanks(c, c.tops().front(), speeds);
+    std::vector<double> distances;
+    for (const double s : sampled(speeds).speed)
+      if (s - top_speed > 0.2 * half) distances.push_back((s - top_speed) / half);
+    EXPECT_LE(distances.front(), 0.9);
+    for (std::size_t k = 1; k < distances.size() && distances[k] < 20; ++k)
+      EXPECT_LE(distances[k], 1.8001 * distances[k - 1]) << known;
+  }
 }
 
 // A range that ends on the flank of a peak; far below a resonance a response rises without one.

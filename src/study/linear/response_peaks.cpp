@@ -154,16 +154,16 @@ void ask_for_flanks(const ResponseCurve& curve, std::size_t top, std::vector<dou
   if (!(half > 0)) return;
   const std::vector<double> asked = speeds;
   for (const double side : {-1.0, 1.0}) {
-    std::vector<double> distances{least * half};
+    std::vector<double> distances;
     for (const auto* all : {&curve.speed, &asked})
       for (const double s : *all)
         if (const double d = side * (s - here); d > least * half / ratio) distances.push_back(d);
+    if (distances.empty()) continue;
     std::ranges::sort(distances);
-    // The first one stands for its own half width if a sample does.
-    if (distances.size() > 1 && distances[1] < ratio * least * half)
-      distances.erase(distances.begin());
-    else if (distances.size() > 1)
+    if (distances.front() > ratio * least * half) {
+      distances.insert(distances.begin(), least * half);
       speeds.push_back(here + side * distances.front());
+    }
     for (std::size_t k = 0; k + 1 < distances.size() && distances[k] < most * half; ++k) {
       const int parts = static_cast<int>(std::ceil(std::log(distances[k + 1] / distances[k]) / std::log(ratio)));
       for (int i = 1; i < parts; ++i) {
