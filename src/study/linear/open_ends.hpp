@@ -13,11 +13,12 @@ namespace whirl::study {
 /// Whether a curve ends (at its last speed, or at its first one) on the flank of a peak beyond: it rises towards there
 /// like s^4 or faster, or falls from there like 1/s^1.5 or faster, or the parabola of 1/f^2 through its last three
 /// speeds has its foot within a tenth of the speed beyond. Far below a resonance a response rises like s^2 and far
-/// above it is level: neither is a flank.
+/// above it is level: neither is a flank. What rises steeply from a dip is one by this rule, with no peak behind it.
 [[nodiscard]] bool ends_on_flank(const ResponseCurve& curve, bool last);
 
 /// A sentence for each end of the range at which places are on a flank, and the machine has a resonance to which that
-/// belongs: among the eigenvalues there, up to half of the speed beyond. Nothing where these are not known.
+/// may belong: among the eigenvalues there, up to half of the speed beyond, or up to a tenth on this side if no peak is
+/// known within a fifth. Nothing where these are not known.
 [[nodiscard]] std::vector<std::string> open_ends(const std::vector<Response>& curve, const std::vector<Place>& places,
                                                  const Spectra& spectra, const std::string& unit);
 
