@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -200,11 +201,9 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // Nobody asked for these speeds: where one has no answer the study goes on.
   bool added = false;
   const bool reached = !options.refine || has_answer([&] { added = add(beside); });
-  if (added) {
-    refine();
-    add_tops(counted, curve, places, false);
-  }
-  // Lines between samples cut the flanks of peaks: a few more there, none of which anybody asked for.
+  if (added) refine();
+  // Lines between samples cut the flanks of peaks: a few more there, none of which anybody asked for. They may show
+  // tops of other places.
   if (options.refine)
     (void)has_answer([&] {
       std::vector<double> flanks;
@@ -212,8 +211,9 @@ StudyResult UnbalanceResponse::run(Context& context) {
         const ResponseCurve of = curve_at(curve, place.of, place.at);
         for (const std::size_t k : of.tops()) ask_for_flanks(of, k, flanks);
       }
-      add(std::move(flanks));
+      if (add(std::move(flanks))) refine();
     });
+  add_tops(counted, curve, places, false);
   if (!options.refine && !beside.empty())
     if (const auto words = shown_by(curve, answer_of([&] { return at_speeds(beside); }), hidden.found, places, unit);
         !words.empty())
@@ -244,8 +244,11 @@ StudyResult UnbalanceResponse::run(Context& context) {
     if (operating_speed) all.push_back(operating_speed->value);
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
-    for (const double at : where_growth_may_hide(spectra, search))
-      if (const auto next = std::ranges::lower_bound(all, at); next != all.end()) counted.push_back(*next);
+    for (const double at : where_growth_may_hide(spectra, search)) {
+      const auto next = std::ranges::lower_bound(all, at);
+      if (next != all.end()) counted.push_back(*next);
+      if (next != all.begin()) counted.push_back(*std::prev(next));
+    }
     stable = StableSpeeds(std::move(all), counted, [&](const std::vector<double>& speeds) {
       look(speeds);
       std::vector<int> out;
