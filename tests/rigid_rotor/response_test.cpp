@@ -76,10 +76,10 @@ TEST(LinearResponse, AmplificationFactorsAreSettledOnAnyGrid) {
 
 // An undamped resonance has a place and no height, and one that was not refined has no bar.
 TEST(LinearResponse, PeaksSayWhatTheyDoNotKnow) {
-  const auto response = [](const std::string& damping, const std::string& more) {
+  const auto response = [](const std::string& damping, const std::string& more, const std::string& loss = "0") {
     study::Deck deck =
         study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/tests/app/friswell_591.yaml",
-                    {"unbalance={u: {planes: [{node: 3, amount: 1 kg mm}]}}",
+                    {"unbalance={u: {planes: [{node: 3, amount: 1 kg mm}]}}", "rotor.loss_factor=" + loss,
                      "bearings.*.film.damping=[" + damping + " N s/m, 0 N s/m, 0 N s/m, " + damping + " N s/m]",
                      "studies=[{unbalance_response: {unbalance: [u], nodes: [3], range: {from: 300 rpm, to: 1500 rpm}" +
                          more + "}}]"});
@@ -99,6 +99,18 @@ TEST(LinearResponse, PeaksSayWhatTheyDoNotKnow) {
   EXPECT_EQ(peak.stability, "undamped");
   ASSERT_EQ(peak.notes.size(), 1U);
   EXPECT_TRUE(peak.notes[0].starts_with("undamped: ")) << peak.notes[0];
+  // Damping ratios of 2e-7, which no speed of a double shows, and a loss factor, which eigenvalues know nothing of.
+  for (const auto& [damping, loss] : {std::pair{"0.01", "0"}, {"0.01", "1e-6"}}) {
+    const auto narrow = response(damping, ", points: 9", loss);
+    ASSERT_EQ(narrow.warnings.size(), 1U);
+    EXPECT_NE(narrow.warnings[0].find("is narrower than 1e-05 of its speed"), std::string::npos) << narrow.warnings[0];
+    const io::PeakEntry& damped = narrow.peaks.front();
+    EXPECT_EQ(damped.stability, std::string(loss) == "0" ? "stable" : "");
+    ASSERT_EQ(damped.notes.size(), 1U);
+    EXPECT_TRUE(damped.notes[0].starts_with("narrower than ")) << damped.notes[0];
+    EXPECT_TRUE(std::isnan(test::values_of(narrow).at("node.3.peak.1.semi_major")));
+    EXPECT_EQ(narrow.stability.find("undamped"), std::string::npos) << narrow.stability;
+  }
   const auto coarse = response("2000", ", points: 9, refine: false");
   for (const auto& [name, value] : coarse.values)
     if (name == "node.3.peak.1.speed") {

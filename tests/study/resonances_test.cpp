@@ -206,5 +206,22 @@ TEST(HiddenResonances, ShowInSpeedsAroundThem) {
   EXPECT_TRUE(shows(computed, 2e5, 1));  // beyond what was asked for
 }
 
+// Only the mode at the peak says whether that is undamped, if its spectrum is known there.
+TEST(HiddenResonances, UndampedIsTheModeNearestToAPeak) {
+  Spectra known;
+  add(known[1000], 1000.5, 1e-6);
+  add(known[1000], 999, 0);
+  add(known[2000], 2000, 1e-9);
+  const ResonanceSearch search{1e9, 0};
+  EXPECT_FALSE(undamped_at(known, 1000.4, search));
+  EXPECT_TRUE(undamped_at(known, 999.1, search));
+  EXPECT_TRUE(undamped_at(known, 2001, search));
+  EXPECT_FALSE(undamped_at(known, 2100, search));
+  EXPECT_FALSE(undamped_at({}, 2000, search));
+  ResonanceSearch lossy = search;
+  lossy.lossless = false;
+  EXPECT_FALSE(undamped_at(known, 2000, lossy));
+}
+
 }  // namespace
 }  // namespace whirl::study

@@ -33,17 +33,22 @@ io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::st
   out.speed = {deck::from_si(peak.speed, unit), unit};
   out.semi_major = {peak.height, "m"};
   out.amplification_factor = {peak.amplification, "1"};
-  if (peak.undamped())
-    out.notes.push_back(
-        fmt::format("{}: it is narrower than {:g} of its speed. The amplitude grows without limit as the "
-                    "speed comes nearer, so that it has no height and no amplification factor",
-                    undamped, peak_tolerance));
   if (!peak.no_factor.empty()) out.notes.push_back("no amplification factor: " + peak.no_factor);
   if (!operating) return out;
   const Separation margin = separation(peak.speed, peak.amplification, operating->from, operating->to);
   out.separation_margin = {margin.actual, "1"};
   out.required_margin = {margin.required, "1"};
   return out;
+}
+
+std::string narrow_words(bool endless) {
+  if (endless)
+    return fmt::format(
+        "{}: its amplitude grows without limit as the speed comes nearer, and it has no height and no amplification "
+        "factor",
+        undamped);
+  return fmt::format("narrower than {:g} of its speed: its height and its amplification factor are not known",
+                     peak_tolerance);
 }
 
 void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit) {
@@ -61,7 +66,7 @@ void warn_of_amplification(io::StudySummary& summary) {
   std::vector<High> high;  // one of each resonance, which shows at many places
   constexpr double near = 0.01;
   const auto see = [&](const io::Quantity& factor, const io::Quantity& speed, const std::string& where) {
-    // An undamped peak says so itself.
+    // A peak too narrow for a factor says so itself.
     if (!std::isfinite(factor.value) || !(factor.value - factor.bar() > high_amplification)) return;
     const High here{factor.value, speed.value,
                     fmt::format("{:.3g} at {:.5g} {}{}", factor.value, speed.value, speed.unit, where)};

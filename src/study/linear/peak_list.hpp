@@ -31,10 +31,13 @@ struct PeakValue {
 };
 [[nodiscard]] const std::vector<PeakValue>& peak_values();
 
-/// The entry of a peak [rad/s, m] with speeds in `unit`; without bars. Height and amplification factor of an undamped
-/// one are infinite, which a note says, and its required margin is that of an infinite factor.
+/// The entry of a peak [rad/s, m] with speeds in `unit`; without bars. Height and amplification factor of one that is
+/// too narrow for them are infinite, and its required margin is that of an infinite factor.
 [[nodiscard]] io::PeakEntry entry_of(const std::string& place, const Peak& peak, const std::string& unit,
                                      const std::optional<deck::Range>& operating);
+
+/// What a peak that is too narrow for a height says of itself: that of a mode without damping is `endless`.
+[[nodiscard]] std::string narrow_words(bool endless);
 
 /// Puts "operating_speed", or "operating_range.from" and ".to" where they differ.
 void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit);

@@ -157,6 +157,18 @@ std::vector<Resonance> undamped_resonances(const std::vector<Complex>& eigenvalu
   return out;
 }
 
+bool undamped_at(const Spectra& known, double speed, const ResonanceSearch& search) {
+  constexpr double near = 2e-3;  // of the speed
+  const auto apart = [&](double other) { return std::abs(other - speed); };
+  const auto spectrum = std::ranges::min_element(known, {}, [&](const auto& s) { return apart(s.first); });
+  if (spectrum == known.end() || apart(spectrum->first) > near * speed) return false;
+  double least = near * speed;
+  bool undamped = false;
+  for (const Complex v : spectrum->second)
+    if (v.imag() > 0 && apart(std::abs(v)) <= least) least = apart(std::abs(v)), undamped = is_undamped(v, search);
+  return undamped;
+}
+
 bool resonance_near(const std::vector<Complex>& eigenvalues, double speed, double below, double above) {
   return std::ranges::any_of(eigenvalues, [&](Complex v) {
     const double apart = (std::abs(v) - speed) / speed;

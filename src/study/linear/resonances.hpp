@@ -43,6 +43,10 @@ inline constexpr double no_peak = 0.7071;
 [[nodiscard]] std::vector<Resonance> undamped_resonances(const std::vector<std::complex<double>>& eigenvalues,
                                                          double from, double to, const ResonanceSearch& search);
 
+/// Whether the mode whose modulus is nearest to a speed is undamped. Where no spectrum and no modulus is known near it,
+/// or there is a loss factor, none is.
+[[nodiscard]] bool undamped_at(const Spectra& known, double speed, const ResonanceSearch& search);
+
 /// Whether the rising speeds (or frequencies) stand so near each other about `at` that a resonance of this width shows.
 [[nodiscard]] bool shows(const std::vector<double>& computed, double at, double width);
 

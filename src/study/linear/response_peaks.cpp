@@ -81,7 +81,7 @@ std::array<double, 2> left_of_width(const std::array<std::optional<Side>, 2>& si
 }
 
 // A top that is off by a part d of its speed is too low by (2 Q d)^2/2 of its height. Where a resonance is narrower
-// than that it has no height that could be told: an undamped one.
+// than that it has no height that could be told.
 constexpr double narrow = 0.5;
 
 }  // namespace
@@ -150,7 +150,7 @@ void ask_for_flanks(const ResponseCurve& curve, std::size_t top, std::vector<dou
   const Peak peak = peak_at(curve, top);
   const double here = peak.speed;
   double half = here / (2 * peak.amplification);
-  if (peak.undamped()) half = 1e-3 * here;
+  if (peak.too_narrow()) half = 1e-3 * here;
   if (!(half > 0)) return;
   const std::vector<double> asked = speeds;
   for (const double side : {-1.0, 1.0}) {

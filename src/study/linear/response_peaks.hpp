@@ -34,15 +34,15 @@ struct ResponseCurve {
   [[nodiscard]] std::vector<std::size_t> tops() const;
 };
 
-/// A peak at one of the samples. Where a resonance is narrower than the tolerance of its speed it is undamped as far as
-/// can be told: height and factor are infinite. It has no factor, not a number, where the curve does not fall to 0.707
-/// of its height on both sides before the range ends or a higher peak rises.
+/// A peak at one of the samples. One that is narrower than the tolerance of its speed has no height that could be told,
+/// whether it is damped or not: height and factor are infinite. It has no factor, not a number, where the curve does
+/// not fall to 0.707 of its height on both sides before the range ends or a higher peak rises.
 struct Peak {
   double speed = 0, height = 0, amplification = 0;  ///< rad/s; m; N/(N2 - N1) at 0.707 of the height (API 684)
   PeakErrors errors;
   std::string no_factor = {};  ///< why it has no amplification factor
 
-  [[nodiscard]] bool undamped() const { return height == std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] bool too_narrow() const { return height == std::numeric_limits<double>::infinity(); }
 };
 [[nodiscard]] Peak peak_at(const ResponseCurve& curve, std::size_t top);
 /// The lowest samples on either side of a top before the curve rises above it or ends, if it stands above the higher
@@ -58,7 +58,7 @@ void ask_for_top(const ResponseCurve& curve, std::size_t top, int pass, std::vec
 void ask_for_width(const ResponseCurve& curve, std::size_t top, std::vector<double>& speeds);
 /// Speeds [rad/s] beside a peak where straight lines between samples would cut its flanks: from 1/2 to 20 half widths
 /// on either side, so that the distances of neighbours from the top have a ratio of at most 1.8. The half width is N/(2
-/// AF). None without a factor; an undamped peak counts as one of AF 500.
+/// AF). None without a factor; a peak that is too narrow for one counts as one of AF 500.
 void ask_for_flanks(const ResponseCurve& curve, std::size_t top, std::vector<double>& speeds);
 /// Of the speeds that were asked for, rising, those that are at least least_step from each other and from the `known`
 /// ones, which rise.

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/shaft_mesh.hpp"
@@ -264,7 +265,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   };
   const system::ShownPlaces shown = machine.places();
   std::vector<Listed> peaks;
-  std::map<std::string, std::string> endless;  // speed: labels of the places
+  std::map<std::pair<std::string, bool>, std::string> narrow;  // speed and whether undamped: labels of the places
   for (std::size_t p = 0; p < places.size(); ++p) {
     const ResponseCurve of = curve_at(curve, places[p].of, places[p].at);
     int number = 0;
@@ -277,23 +278,24 @@ StudyResult UnbalanceResponse::run(Context& context) {
         summary.set(head + prominence, peak.height - saddle_height(of, saddles), "m");
       io::PeakEntry entry = entry_of(places[p].label, peak, unit, operating);
       if (stable.known()) entry.stability = StableSpeeds::word(stable.at(peak.speed));
-      if (peak.undamped() && entry.stability != StableSpeeds::word(1)) entry.stability = undamped;
+      const bool endless =
+          peak.too_narrow() && entry.stability == StableSpeeds::word(0) && undamped_at(spectra, peak.speed, search);
+      if (endless) entry.stability = undamped;
+      if (peak.too_narrow()) entry.notes.push_back(narrow_words(endless));
       if (const std::string bearing = touched(nearest(curve, peak.speed), shown); !bearing.empty())
         entry.notes.push_back("no answer: the motion leaves bearing " + bearing + " too little film");
       peaks.push_back({entry,
                        {head, p, peak.speed, peak.height, peak.amplification, peak.errors, saddles},
                        unsettled(of, k, peak, options.refine, unit)});
-      if (!peak.undamped()) continue;
+      if (!peak.too_narrow()) continue;
       // Places see one resonance at speeds that differ by the tolerance.
-      std::string& where = endless[fmt::format("{:.5g}", deck::from_si(peak.speed, unit))];
+      std::string& where = narrow[{fmt::format("{:.5g}", deck::from_si(peak.speed, unit)), endless}];
       where += (where.empty() ? "" : "; ") + places[p].label;
     }
   }
-  for (const auto& [speed, where] : endless)
-    summary.warnings.push_back(fmt::format(
-        "the peak near {} {} is undamped ({}): its amplitude grows without limit as the speed comes nearer, "
-        "and it has no height and no amplification factor",
-        speed, unit, where));
+  for (const auto& [peak, where] : narrow)
+    summary.warnings.push_back(
+        fmt::format("the peak near {} {} ({}) is {}", peak.first, unit, where, narrow_words(peak.second)));
   // The first node named in the deck is the one the report speaks of; its highest peak comes first.
   std::vector<NamedPeak> named;
   int number = 0;
@@ -352,7 +354,9 @@ StudyResult UnbalanceResponse::run(Context& context) {
   put_films(group, summary, shown, curve, unit);
   put_stability(group, summary, curve, stable, operating_speed, unit);
   // Nothing grows, and something does not decay.
-  if (constexpr std::string_view word = "stable"; !endless.empty() && summary.stability.starts_with(word))
+  if (constexpr std::string_view word = "stable";
+      std::ranges::find(summary.peaks, undamped, &io::PeakEntry::stability) != summary.peaks.end() &&
+      summary.stability.starts_with(word))
     summary.stability.replace(0, word.size(), "stable or undamped");
   warn_of_amplification(summary);
   // The error that the mesh of the shaft leaves in a value, relative to it; zero of one that is but rounding.
