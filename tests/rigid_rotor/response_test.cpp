@@ -120,10 +120,12 @@ TEST(LinearResponse, PeaksSayWhatTheyDoNotKnow) {
 
 // A transfer function has no largest value where it grows without limit, however near to that a frequency lies.
 TEST(LinearResponse, TransferFunctionsOfAnUndampedMachineHaveNoLargestValue) {
-  const auto transfer = [](const std::string& damping, const std::string& range) {
+  const auto transfer = [](const std::string& damping, const std::string& range,
+                           const std::string& stiffness = "1 MN/m") {
     study::Deck deck = study::load(
         MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/tests/app/friswell_591.yaml",
         {"bearings.*.film.damping=[" + damping + " N s/m, 0 N s/m, 0 N s/m, " + damping + " N s/m]",
+         "bearings.*.film.stiffness=[" + stiffness + ", 0 N/m, 0 N/m, " + stiffness + "]",
          "studies=[{frequency_response: {speed: 0 rpm, inputs: [{node: 3}], points: 20, range: {" + range + "}}}]"});
     return test::run_deck(deck, "linear_endless").at(0);
   };
@@ -146,6 +148,30 @@ TEST(LinearResponse, TransferFunctionsOfAnUndampedMachineHaveNoLargestValue) {
         place = q.value;
       }
   }
+  // On springs of 100 N/m the shaft, four orders stiffer, is rigid: m w^2 = 2 k of its mass about, and J w^2 = k (a^2 +
+  // b^2) of its tilt, coupled by k (b - a).
+  constexpr double pi = 3.14159265358979, length = 1.5, stiffness = 100;
+  const auto mass_of = [](double outer, double inner, double thickness) {
+    return 7810 * pi / 4 * (outer * outer - inner * inner) * thickness;
+  };
+  double mass = 0, moment = 0, about_left = 0;
+  const auto add = [&](double at, double outer, double inner, double thickness) {
+    const double m = mass_of(outer, inner, thickness);
+    mass += m;
+    moment += m * at;
+    about_left += m * (at * at + (outer * outer + inner * inner) / 16 + thickness * thickness / 12);
+  };
+  add(length / 2, 0.05, 0, length);
+  add(0.5, 0.28, 0.05, 0.07);
+  add(1.0, 0.35, 0.05, 0.07);
+  const double centre = moment / mass, tilt = about_left - mass * centre * centre;
+  Eigen::Matrix2d a;
+  const double coupled = stiffness * (length - 2 * centre);
+  a << 2 * stiffness / mass, coupled / mass, coupled / tilt,
+      stiffness * (centre * centre + std::pow(length - centre, 2)) / tilt;
+  const double lowest = std::sqrt(a.trace() / 2 - std::sqrt(a.trace() * a.trace() / 4 - a.determinant()));
+  const auto rigid = test::values_of(transfer("0", "from: 0.5 rad/s, to: 2 rad/s", "100 N/m"));
+  EXPECT_NEAR(rigid.at("node.3.x.from.node.3.x.largest_at"), lowest, 3e-4 * lowest);
   EXPECT_TRUE(std::isfinite(largest(transfer("0", "from: 20 rad/s, to: 60 rad/s"))));
   EXPECT_TRUE(std::isfinite(largest(transfer("200", "from: 20 rad/s, to: 150 rad/s"))));
 }
