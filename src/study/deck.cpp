@@ -175,11 +175,11 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
   return d;
 }
 
-std::vector<std::string> unusual(const Deck& d) {
-  std::vector<std::string> all = unusual_lubricants(d.machine);
-  for (std::string& line : negative_damping(d.machine)) all.push_back(std::move(line));
-  for (std::string& line : rotor::impossible_inertias(d.machine.rotor)) all.push_back(std::move(line));
-  if (d.bars == BarsFrom::none)
+std::vector<std::string> unusual(const system::Machine& machine, BarsFrom bars) {
+  std::vector<std::string> all = unusual_lubricants(machine);
+  for (std::string& line : negative_damping(machine)) all.push_back(std::move(line));
+  for (std::string& line : rotor::impossible_inertias(machine.rotor)) all.push_back(std::move(line));
+  if (bars == BarsFrom::none)
     all.emplace_back(
         "bars: none: the errors of the meshes are not estimated. Stability and margins are those of the meshes in use; "
         "whether a bifurcation is supercritical is undetermined");
@@ -187,7 +187,7 @@ std::vector<std::string> unusual(const Deck& d) {
 }
 
 std::vector<std::string> warnings(const Deck& d) {
-  std::vector<std::string> all = unusual(d);
+  std::vector<std::string> all = unusual(d.machine, d.bars);
   const auto add = [&all](std::vector<std::string> lines) { all.insert(all.end(), lines.begin(), lines.end()); };
   add(rotor::advice(d.machine.rotor));
   add(machine_warnings(d.machine));

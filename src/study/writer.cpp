@@ -63,7 +63,7 @@ Writer::Writer(MPI_Comm comm, const Deck& deck, const RunOptions& options)
   root_.child("studies");
   all_.title = deck.machine.title;
   all_.version = options.version;
-  all_.warnings = unusual(deck);
+  all_.warnings = unusual(deck.machine, deck.bars);
   all_.ranks = core::size_of(comm);
   all_.options.clear();
   for (const auto& o : core::Session::options_in_force()) all_.options.push_back({o.name, o.value, o.source});

@@ -17,7 +17,6 @@
 #include "whirl/rotor/advice.hpp"
 #include "whirl/study/deck.hpp"
 #include "whirl/study/sweep/sweep.hpp"
-#include "whirl/study/sweep/verdict_words.hpp"
 
 namespace {
 
@@ -230,7 +229,7 @@ TEST(SweepTable, ASignCountsIfItsBarDoesNotContainZero) {
   // A value that only one variant has shows no trend.
   EXPECT_THROW((void)trend(trends, "balanced.hopf.5"), core::Bug);
   study::Findings results(MPI_COMM_WORLD, "s", "sweep", "s.checkpoint.h5", nullptr);
-  study::put_table(results, rows);
+  study::put_table(results, rows, {});
   const auto files = io::csv_tables(results.group());
   ASSERT_EQ(files.size(), 1U);
   EXPECT_EQ(files[0].name, "table");
@@ -313,72 +312,6 @@ TEST(Sweep, GradesAreNumbers) {
     EXPECT_NEAR(variants[k].coordinates[0].given, 2.5, 1e-12);
     EXPECT_EQ(variants[k].coordinates[0].unit, "mm/s");
   }
-}
-
-// A row of a sweep says whether its machine is stable, whatever study found it.
-TEST(SweepVerdict, IsThatOfTheStudies) {
-  using study::Found;
-  io::StudySummary branch = with_hopf({{5000, 10}}), modes, response;
-  branch.stability = "loses stability";
-  branch.ranges = {{600, 5000, "rpm", "stable"}, {5000, 7500, "rpm", "unstable"}};
-  EXPECT_EQ(study::verdict_of(branch).words, "stable 600 to 5000, unstable to 7500 rpm");
-  EXPECT_EQ(study::verdict_of(branch).found, Found::in_part);
-  modes.name = "modes";
-  const auto mode = [&](double speed, const std::string& stability) {
-    io::ModeEntry m;
-    m.speed = speed;
-    m.speed_unit = "rpm";
-    m.stability = stability;
-    m.more["mode"] = 1;
-    modes.modes.push_back(m);
-  };
-  mode(3000, "stable");
-  EXPECT_EQ(study::verdict_of(modes).found, Found::stable);
-  mode(3000, "undetermined");
-  modes.modes.back().imag = 1.7e5;
-  modes.modes.back().real = 4e-5;  // a vibration of the elements
-  EXPECT_EQ(study::verdict_of(modes).found, Found::stable);
-  modes.modes.back().real = 4;
-  EXPECT_EQ(study::verdict_of(modes).found, Found::undetermined);
-  mode(7500, "diverges");
-  EXPECT_EQ(study::verdict_of(modes).words, "unstable at 7500 rpm");
-  modes.modes.erase(modes.modes.begin(), modes.modes.begin() + 2);
-  EXPECT_EQ(study::verdict_of(modes).found, Found::unstable);
-  // Of a shaft without its bearings nothing is said.
-  modes.modes.front().more.clear();
-  EXPECT_EQ(study::verdict_of(modes).found, Found::nothing);
-  response.name = "r";
-  response.stability = "unstable at the 13 speeds counted";
-  EXPECT_EQ(study::verdict_of(response).found, Found::unstable);
-  response.stability = "unstable from 300 to 900 rpm";
-  EXPECT_EQ(study::verdict_of(response).found, Found::in_part);
-  response.stability = "stable throughout";
-  const std::vector<io::StudySummary> both{branch, response};
-  EXPECT_EQ(study::verdict_of(both).words, "balanced: stable 600 to 5000, unstable to 7500 rpm; r: stable throughout");
-  EXPECT_EQ(study::verdict_of(both).found, Found::in_part);
-  response.stability.clear();
-  response.status = "did not converge";
-  EXPECT_EQ(study::verdict_of(response).words, "no result: did not converge");
-}
-
-TEST(SweepWarnings, StandOnceWithTheirRows) {
-  const auto row = [](const std::string& name, const std::string& words) {
-    study::SweepRow r{name, {}, {}, {}};
-    if (name != "as given") {
-      r.coordinates.push_back({"Q", 1, 0, "N/m"});
-      r.unusual = {"bars: none"};
-    }
-    io::StudySummary s;
-    s.name = "m";
-    s.warnings = {"a mesh is coarse"};
-    if (!words.empty()) s.warnings.push_back(words);
-    r.studies.push_back(s);
-    return r;
-  };
-  const auto found = study::warnings_of({row("as given", ""), row("a", "grows at 12.5 Hz"), row("b", "grows at 9 Hz")});
-  ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0], "all rows, m: a mesh is coarse");
-  EXPECT_EQ(found[1], "'a', 'b' (numbers of 'a'), m: grows at 12.5 Hz");
 }
 
 TEST(SweepTable, ComesBackFromItsFile) {

@@ -39,8 +39,8 @@ void describe(deck::Description<Deck>& d);
 /// Full references of the sources that help names in short.
 [[nodiscard]] std::span<const deck::Citation> citations();
 
-/// What is unusual about the numbers of the machine, a line each; the results carry these.
-[[nodiscard]] std::vector<std::string> unusual(const Deck& deck);
+/// What is unusual about the numbers of the machine and about its error bars, a line each; the results carry these.
+[[nodiscard]] std::vector<std::string> unusual(const system::Machine& machine, BarsFrom bars);
 /// That, and what is unusual about the lengths of the shaft's segments and in variants, a line each; nothing of it
 /// keeps the deck from being computed.
 [[nodiscard]] std::vector<std::string> warnings(const Deck& deck);

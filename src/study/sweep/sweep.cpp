@@ -155,8 +155,9 @@ StudyResult Sweep::run(Context& context) {
 
   std::vector<SweepRow> rows;
   std::size_t failed = 0, asked = 0;
+  const std::vector<std::string> given = unusual(context.machine, context.layout.bars);
   if (options.as_given) {
-    SweepRow row{"as given", {}, {}, {}};
+    SweepRow row{"as given", {}, {}, given};
     for (const auto& s : context.summaries)
       if (s.kind != key && std::any_of(variants_.front().deck->studies.begin(), variants_.front().deck->studies.end(),
                                        [&](const auto& one) { return s.name == one->name(); }))
@@ -169,7 +170,7 @@ StudyResult Sweep::run(Context& context) {
     rows.push_back({variants_[k].name,
                     variants_[k].coordinates,
                     {summaries.begin(), summaries.end()},
-                    unusual(*variants_[k].deck)});
+                    unusual(variants_[k].deck->machine, variants_[k].deck->bars)});
     io::Group& group = folder.child(io::safe_name(variants_[k].name));
     io::leave_in_file(group, stores[k]->path(), "state/studies");
     group.set("title", variants_[k].name);
@@ -182,7 +183,7 @@ StudyResult Sweep::run(Context& context) {
     results.summary().variants.push_back(
         {variants_[k].name, variants_[k].changes, {summaries.begin(), summaries.end()}});
   }
-  put_table(results, rows);
+  put_table(results, rows, given);
   results.summary().points = static_cast<long>(n);
   return results.finish(failed == 0 ? "completed" : fmt::format("{} of {} studies delivered nothing", failed, asked),
                         failed < asked);

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <map>
 #include <numeric>
+#include <set>
+#include <string_view>
 
 #include "whirl/study/sweep/verdict_words.hpp"
 
@@ -100,6 +102,37 @@ std::string sign_of(const io::Trend& t) {
   return up ? "+" : down ? "-" : same ? "0" : "not comparable";
 }
 
+// Words with # for each number. Digits of names are none: behind a letter, _ or ., in quotes, and in "node 12".
+std::string without_numbers(std::string_view text) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto digits_end = [&](std::size_t at) {
+    while (at < text.size() && digit(text[at])) ++at;
+    return at;
+  };
+  std::string out;
+  const auto counts = [&](std::string_view thing) { return out.ends_with(thing); };
+  for (std::size_t at = 0, end = 0; at < text.size(); at = end) {
+    const char before = at > 0 ? text[at - 1] : ' ';
+    end = at + 1;
+    if (text[at] == '\'' && !letter(before) && !digit(before)) {
+      end = std::min(text.find('\'', end), text.size() - 1) + 1;
+    } else if (digit(text[at])) {
+      end = digits_end(at);
+      const auto things = {"node ",  "nodes ", "mode ",           "modes ",   "bearing ",
+                           "plane ", "peak ",  "critical speed ", "segment ", "pad "};
+      if (!letter(before) && before != '.' && std::ranges::none_of(things, counts)) {
+        if (end + 1 < text.size() && text[end] == '.') end = digits_end(end + 1);
+        if (end + 2 < text.size() && text[end] == 'e' && !letter(text[end + 1])) end = digits_end(end + 2);
+        out += '#';
+        continue;
+      }
+    }
+    out += text.substr(at, end - at);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<io::SweepColumn> columns_of(const io::StudySummary& study) {
@@ -167,31 +200,30 @@ std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows, const std::v
   return all;
 }
 
-std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows) {
+std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows, const std::vector<std::string>& given) {
   struct Kept {
     std::string study, text;
     std::vector<std::size_t> rows = {};
     bool differ = false;
   };
   std::vector<Kept> all;
-  std::map<std::string, std::size_t> known;
+  std::map<std::pair<std::string, int>, std::size_t> known;
+  std::map<std::string, int> number;  // of texts of these words in one row, each of which is a warning of its own
+  std::set<std::string> said;         // in this row
   const auto take = [&](std::size_t row, const std::string& study, const std::string& text) {
-    std::string words = study + ": ";
-    for (const char c : text)
-      if (const bool digit = c >= '0' && c <= '9'; !digit || words.back() != '#') words += digit ? '#' : c;
-    // 1.5 and 12, 1e-9 and 0.3 are but numbers.
-    for (const char* inner : {"#.#", "#e-#", "#e+#"})
-      for (std::size_t at = words.find(inner); at != std::string::npos; at = words.find(inner))
-        words.replace(at, std::string_view(inner).size(), "#");
-    const auto [place, added] = known.emplace(words, all.size());
+    if (!said.insert(study + ": " + text).second) return;
+    const std::string words = study + ": " + without_numbers(text);
+    const auto [place, added] = known.emplace(std::pair(words, ++number[words]), all.size());
     if (added) all.push_back({study, text});
     Kept& kept = all[place->second];
-    if (kept.rows.empty() || kept.rows.back() != row) kept.rows.push_back(row);
+    kept.rows.push_back(row);
     kept.differ = kept.differ || kept.text != text;
   };
   std::size_t variants = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     variants += !rows[r].coordinates.empty();
+    number.clear();
+    said.clear();
     for (const std::string& line : rows[r].unusual) take(r, {}, line);
     for (const io::StudySummary& s : rows[r].studies)
       for (const std::string& line : s.warnings) take(r, s.name, line);
@@ -199,7 +231,11 @@ std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows) {
   constexpr std::size_t most = 6;
   std::vector<std::string> out;
   for (const Kept& k : all) {
-    if (k.study.empty() && k.rows.size() == variants) continue;
+    // The deck itself says it.
+    const auto held = std::ranges::count_if(k.rows, [&](std::size_t r) { return !rows[r].coordinates.empty(); });
+    if (k.study.empty() && !k.differ && std::ranges::find(given, k.text) != given.end() &&
+        static_cast<std::size_t>(held) == variants)
+      continue;
     std::vector<std::string> names;
     for (const std::size_t r : k.rows) names.push_back("'" + rows[r].name + "'");
     const std::size_t shown = std::min(most, names.size());
@@ -214,9 +250,9 @@ std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows) {
   return out;
 }
 
-void put_table(Findings& results, const std::vector<SweepRow>& rows) {
+void put_table(Findings& results, const std::vector<SweepRow>& rows, const std::vector<std::string>& given) {
   auto& summary = results.summary();
-  for (std::string& line : warnings_of(rows)) summary.warnings.push_back(std::move(line));
+  for (std::string& line : warnings_of(rows, given)) summary.warnings.push_back(std::move(line));
   summary.columns = table_of(rows);
   summary.trends = trends_of(rows, summary.columns);
   std::vector<std::string> names, verdicts;
@@ -229,8 +265,8 @@ void put_table(Findings& results, const std::vector<SweepRow>& rows) {
   std::string order = "variant\nverdict";
   table.put("variant", names, "the deck as it stands, and the variants in their order");
   table.put("verdict", verdicts,
-            "what its studies say of its stability: peaks, margins and factors of an unstable equilibrium are those of "
-            "no motion");
+            "what its studies say of its stability; about an unstable equilibrium peaks, margins and factors describe "
+            "no real motion");
   const auto put = [&](const std::string& name, std::vector<double> values, const std::string& unit,
                        const std::string& text) {
     table.put(io::safe_name(name), std::move(values), unit, text);

@@ -29,12 +29,13 @@ struct SweepRow {
 [[nodiscard]] std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows,
                                                const std::vector<io::SweepColumn>& columns);
 
-/// Warnings of the rows, each once with the names of the rows that it belongs to. Words that differ in their numbers
-/// alone are the same: they stand with the numbers of the first row. What is unusual about all decks is left out; the
-/// deck itself says it.
-[[nodiscard]] std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows);
+/// Warnings of the rows, each once with the names of the rows that it belongs to. Words of different rows that differ
+/// in their numbers alone are the same, and stand with the numbers of the first row; digits of names are no numbers. A
+/// line of `given`, what is unusual about the deck as it stands, is left out if all variants have it.
+[[nodiscard]] std::vector<std::string> warnings_of(const std::vector<SweepRow>& rows,
+                                                   const std::vector<std::string>& given);
 
 /// All of it into the results, with the verdict on each row.
-void put_table(Findings& results, const std::vector<SweepRow>& rows);
+void put_table(Findings& results, const std::vector<SweepRow>& rows, const std::vector<std::string>& given);
 
 }  // namespace whirl::study
