@@ -115,11 +115,13 @@ std::string of_sweep(const io::StudySummary& s, std::span<const io::StudySummary
                     given = rows - s.variants.size();
   const std::vector<study::VariantVerdict> verdicts = verdicts_of(s, given, before);
   std::vector<std::string> told;
+  bool any_marked = false;
   for (std::size_t i = 0; i < rows; ++i) {
     const std::string& name = i < given ? "as given" : s.variants[i - given].name;
     const study::VariantVerdict& verdict = verdicts[i];
     // Whoever reads the columns of another block sees that the row is marked.
     const bool marked = verdict.found > study::Found::stable;
+    any_marked = any_marked || marked;
     if (marked && verdict.words != "unstable") told.push_back(name + ": " + verdict.words);
     std::vector<std::string> row{name + (marked ? " *" : ""), study::name_of(verdict.found)};
     for (std::size_t c = 0; c < shown; ++c) {
@@ -131,8 +133,10 @@ std::string of_sweep(const io::StudySummary& s, std::span<const io::StudySummary
   std::string out = grid.text();
   if (shown < columns.size())
     out += fmt::format("    and {} more values: see the report or the CSV table\n", columns.size() - shown);
-  if (std::ranges::any_of(verdicts, [](const auto& v) { return v.found >= study::Found::in_part; }))
-    out += "    *: not stable; where it is unstable its peaks, margins and factors are those of no motion\n";
+  if (any_marked)
+    out += in_lines(
+        "*: not known to be stable. About an unstable equilibrium peaks, margins and factors describe no real motion.",
+        4);
   for (std::size_t k = 0; k < std::min(most_told, told.size()); ++k) out += in_lines(told[k], 4);
   if (told.size() > most_told)
     out += fmt::format("    and {} more: see 'verdict' in the table\n", told.size() - most_told);

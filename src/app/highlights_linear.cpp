@@ -148,9 +148,9 @@ std::string of_response(const io::StudySummary& s, std::span<const io::StudySumm
       before, [&](const io::StudySummary& b) { return std::ranges::any_of(study::critical_speeds_of(b), has_factor); });
   if (modes != before.end() && std::ranges::any_of(s.peaks, has_factor))
     out +=
-        in_lines(fmt::format("AF: the width of this response over the speed, at 0.707 of the peak; '{}' has pi/delta "
-                             "of the mode at fixed speed. They differ where the frequency of the mode "
-                             "changes with the speed",
+        in_lines(fmt::format("AF (3 dB) is N/(N2 - N1) of this response at 0.707 of its peak; '{}' gives pi/delta of "
+                             "the mode at fixed speed. They differ where the frequency of the mode changes with the "
+                             "speed",
                              modes->name),
                  4);
   return out;
@@ -164,9 +164,13 @@ std::string of_transfers(const io::StudySummary& s, const Values& v) {
                          q.value, v.cell(name + "_at"), v.unit(name + "_at"));
   Grid grid({"largest answer", "amplitude", "unit",
              fmt::format("at [{}]", s.values.empty() ? "" : v.unit(s.values[1].first))});
+  // The file of a run that goes on has null for infinity, too.
+  const auto endless = [&](double value) {
+    return std::isinf(value) || (std::isnan(value) && s.stability == "undamped");
+  };
   for (const auto& [name, q] : s.values)
     if (name.ends_with(".largest"))
-      grid.add({name.substr(0, name.size() - 8), std::isfinite(q.value) ? v.cell(name) : "without limit", q.unit,
+      grid.add({name.substr(0, name.size() - 8), endless(q.value) ? "without limit" : v.cell(name), q.unit,
                 v.cell(name + "_at")});
   return out + grid.text();
 }

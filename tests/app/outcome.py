@@ -125,6 +125,20 @@ for name, value in values.items():
     line = next((x for x in text.split("\n") if re.search(f"{name} [*]  .*unstable in part", x)), "")
     if not any(re.fullmatch(r"[0-9.]+", w) and abs(float(w) / value - 1) < 1e-5 for w in line.split()):
         failures.append(f"no row '{name}' with {value} in\n{text}")
+# An undamped row is marked too, and the mark is explained; so are the two factors of one resonance.
+nelson, damped = source / "tests" / "app" / "nelson.yaml", "[2000 N s/m, 0 N s/m, 0 N s/m, 2000 N s/m]"
+marks = ["--set", "bars=none", "studies=[{modes: {name: m, speeds: [1000 rpm], count: 2}}, {frequency_response: {name: f, speed: 1000 rpm, range: {from: 1600 rad/s, "
+         "to: 1800 rad/s}, points: 3, inputs: [{node: 5, direction: x}], outputs: [{node: 5, direction: x}]}}, {sweep: {name: c, of: [m], grid: {gravity: [x2]}}}]"]
+factors = ["--set", "bars=none", f"bearings.*.film.damping={damped}", "unbalance={u: {planes: [{node: 5, amount: 1 g mm}]}}",
+           "studies=[{modes: {name: m, range: {from: 15000 rpm, to: 18000 rpm}, points: 3, count: 2}}, {unbalance_response: {name: r, unbalance: [u], "
+           "range: {from: 15000 rpm, to: 19000 rpm}, points: 21, nodes: [5]}}]"]
+for name, words, said in (("marks", marks, "without limit(.|\n)*as given [*]  .*undamped(.|\n)*[*]: not known to be stable[.]"),
+                          ("factors", factors, r"AF \(3 dB\) is N/\(N2 - N1\) of this response at 0.707 of its peak; 'm' gives")):
+    text, _ = run(nelson, name, *words)
+    # A run that goes on says the same of what had ended.
+    again, _ = run(nelson, name, *words, "--resume")
+    if not re.search(said, text) or again != text:
+        failures.append(f"no '{said}' in\n{text}\nor not in the run that goes on:\n{again}")
 
 if not failures:
     shutil.rmtree(work)
