@@ -58,14 +58,16 @@ def senses(whirl):
     return [after if before == "either" else before for before, after in zip(whirl, whirl[1:])]
 
 
-def with_borders(study, mode, speed, frequency, decrement, whirl):
-    """A track with the points put in where it was located to begin or to cease to grow, and whether a point is one of them."""
+def ranges_of(study, mode):
+    """(from, to, begins, ends) of the ranges of speed over which a mode grows; the last two say whether an end was located."""
     rows = [study.get(f"unstable/{k}") for k in ("mode", "from", "to", "begins", "ends")]
+    return [] if any(row is None for row in rows) else [row[1:] for row in zip(*map(np.atleast_1d, rows)) if int(row[0]) == mode]
+
+
+def with_borders(ranges, speed, frequency, decrement, whirl):
+    """A track with the points put in where it was located to begin or to cease to grow, and whether a point is one of them."""
     border = np.zeros(len(speed), bool)
-    if any(row is None for row in rows):
-        return speed, frequency, decrement, whirl, border
-    places = {at for m, low, high, begins, ends in zip(*map(np.atleast_1d, rows)) if int(m) == mode for at, there in ((low, begins), (high, ends)) if there}
-    for at in sorted(places):
+    for at in sorted({at for low, high, begins, ends in ranges for at, there in ((low, begins), (high, ends)) if there}):
         k = int(np.searchsorted(speed, at))
         if 0 < k < len(speed) and speed[k] != at and speed[k - 1] != at:
             speed, frequency, decrement, whirl, border = (np.insert(column, k, value) for column, value in (
@@ -73,22 +75,24 @@ def with_borders(study, mode, speed, frequency, decrement, whirl):
     return speed, frequency, decrement, whirl, border
 
 
-def between(decrement, border):
-    """Decrement that colours the line from each point to the next: the smaller one. A track is unstable from its located border on; where
-    none was located, between two of its speeds that grow."""
-    a, b = decrement[:-1], decrement[1:]
+def between(speed, decrement, border, ranges):
+    """Decrement that colours the line from each point to the next: the smaller one, below zero where the middle lies in a range over which
+    the mode grows. Where none was located, a track grows between two of its speeds that grow."""
+    a, b, middle = decrement[:-1], decrement[1:], (speed[:-1] + speed[1:]) / 2
     worst = np.minimum(a, b)
     worst = np.where((a < 0) != (b < 0), np.maximum(a, b), worst)
-    return np.where(border[:-1], b, np.where(border[1:], a, worst))
+    # Beside a located border, where the decrement is zero, a track is damped.
+    worst = np.where(border[:-1] | border[1:], np.maximum(np.maximum(a, b), np.finfo(float).tiny), worst)
+    grows = np.any([(low < middle) & (middle < high) for low, high, *_ in ranges], axis=0) if ranges else np.zeros(len(middle), bool)
+    return np.where(grows, -1.0, worst)
 
 
-def draw_lines(axis, x, y, decrement, whirl, border):
+def draw_lines(axis, x, y, decrement, whirl, worst):
     """One polyline per stretch of one whirl and one class of damping, so that dashes run through."""
     if len(x) == 1:
         if not decrement[0] > OVERDAMPED:  # what does not vibrate needs no dot of its own
             axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
         return
-    worst = between(decrement, border)
     sense = senses(whirl)
     for start, stop in runs(list(zip(sense, map(colour_of, worst), worst > OVERDAMPED))):
         heavy = worst[start] > OVERDAMPED
@@ -138,9 +142,11 @@ def draw(study):
     every, full = np.unique(study.get("spectrum/speed")), crowded_out(study)
     for mode, speed, frequency, decrement, whirl in modes:
         for a, b in stretches(speed, frequency, every, full):
-            at, height, damped, sense, border = with_borders(study, mode, *(column[a:b] for column in (speed, frequency, decrement, whirl)))
-            draw_lines(top, at * to_speed, height * to_frequency, damped, sense, border)
-            draw_lines(bottom, at * to_speed, damped, damped, sense, border)
+            ranges = ranges_of(study, mode)
+            at, height, damped, sense, border = with_borders(ranges, *(column[a:b] for column in (speed, frequency, decrement, whirl)))
+            worst = between(at, damped, border, ranges)
+            draw_lines(top, at * to_speed, height * to_frequency, damped, sense, worst)
+            draw_lines(bottom, at * to_speed, damped, damped, sense, worst)
     all_frequency = np.concatenate([m[2] for m in modes])
     ends = np.array([every[0], every[-1]])
     limit = min(all_frequency.max() * 1.06, 3 * ends[1])

@@ -47,9 +47,12 @@ class Validity:
             axis.plot(x[low:high], y[low:high], **{**look, **({} if self.stable[start] else {"linestyle": DASHED, "label": "_"})})
 
     def shade(self, axis, x):
+        half = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
         for start, stop in runs(list(self.stable)):
             if not self.stable[start]:
-                axis.axvspan(x[start], x[stop - 1], color=BAD, alpha=0.06, linewidth=0)
+                # A single speed would have a band of no width.
+                low, high = (half[start], half[stop]) if stop - start == 1 else (x[start], x[stop - 1])
+                axis.axvspan(low, high, color=BAD, alpha=0.06, linewidth=0)
 
 
 def draw_lag(axis, x, phase, colour, validity):

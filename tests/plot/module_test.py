@@ -251,6 +251,14 @@ def facts():
     response.plt.close(figure)
     assert solid.get_linestyle() == "-" and np.array_equal(solid.get_ydata(), [0, 1, np.nan, 3, 4], equal_nan=True), solid.get_ydata()
     assert dashed.get_linestyle() == "--" and np.array_equal(dashed.get_ydata(), [4, 5]), (dashed.get_linestyle(), dashed.get_ydata())
+    # A single unstable speed is shaded half-way to both sides; an unstable end, to the end.
+    for counts, bands in (([0, 1, 0, 0, 2, 2], [(0.5, 1.5), (4, 5)]), ([1, 0, 0, 0, 0, 1], [(0, 0.5), (4.5, 5)])):
+        figure, axis = response.plt.subplots()
+        told = response.Validity(type("Counts", (), {"get": lambda _, name, counts=counts: np.array(counts) if name.endswith("count") else None})(), 6)
+        told.shade(axis, np.arange(6.0))
+        shaded = [p.get_extents().transformed(axis.transData.inverted()).intervalx for p in axis.patches]
+        assert np.allclose(shaded, bands), (counts, shaded)
+        response.plt.close(figure)
     assert response.is_answer({}) and not response.is_answer({"stability": "undetermined"}) and not response.is_answer({"notes": ["no answer: B1"]})
     # A track turns red where it was located to grow, else at the first speed at which it grows.
     from whirl_plot import campbell
@@ -258,10 +266,23 @@ def facts():
         def get(self, name):
             return {"mode": [1, 1, 2], "from": [2.2, 4.0, 0.1], "to": [2.9, 4.0, 4.0], "begins": [1, 0, 1], "ends": [0, 0, 0]}[name.split("/")[1]]
     track = np.arange(5.0), np.arange(5.0), np.array([0.3, 0.2, 0.2, -0.1, 0.2]), np.array(["forward"] * 5)
-    at, _, damped, sense, border = campbell.with_borders(Growing(), 1, *track)
+    ranges = campbell.ranges_of(Growing(), 1)
+    at, _, damped, sense, border = campbell.with_borders(ranges, *track)
     assert list(at) == [0, 1, 2, 2.2, 3, 4] and list(np.nonzero(border)[0]) == [3] and len(sense) == 6, (at, border)
-    assert [campbell.colour_of(d) == campbell.BAD for d in campbell.between(damped, border)] == [False, False, False, True, False]
-    assert not any(d < 0 for d in campbell.between(track[2], np.zeros(5, bool)))
+    def red(at, damped, border, ranges):
+        return [campbell.colour_of(d) == campbell.BAD for d in campbell.between(at, damped, border, ranges)]
+    assert red(at, damped, border, ranges) == [False, False, False, True, False]
+    assert not any(red(track[0], track[2], np.zeros(5, bool), []))
+    # It grows between two neighbouring speeds only, at both of which it is damped.
+    ranges = [(1.2, 1.7, 1, 1)]
+    at, _, damped, _, border = campbell.with_borders(ranges, *track[:2], np.full(5, 0.2), track[3])
+    assert list(at) == [0, 1, 1.2, 1.7, 2, 3, 4] and list(np.nonzero(border)[0]) == [2, 3], (at, border)
+    assert red(at, damped, border, ranges) == [False, False, True, False, False, False]
+    # Between two such ranges it is damped, with no point of its own there.
+    ranges.append((1.8, 1.9, 1, 1))
+    at, _, damped, _, border = campbell.with_borders(ranges, *track[:2], np.full(5, 0.2), track[3])
+    assert red(at, damped, border, ranges) == [False, False, True, False, True, False, False, False]
+    assert campbell.between(at, damped, border, ranges)[3] > 0, "not undamped"
     # Limits at one place would be warned of on the screen.
     from whirl_plot.style import span_of
     assert span_of(1.0, 2.0) == (1.0, 2.0) and all(a < b for a, b in (span_of(0.0, 0.0), span_of(-3.0, -3.0), span_of(2.0, 2.0)))
