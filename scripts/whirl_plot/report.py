@@ -61,9 +61,9 @@ def numeric(cell):
     return isinstance(cell, (int, float)) or bool(re.fullmatch(r"[\u2212-]?[0-9.]+(e[\u2212-]?\d+)?( \u00b1 [0-9.]+)?( %)?|\u2013", str(cell)))
 
 
-def marked(cell):
-    """A cell, red where it is a bad verdict."""
-    bad = re.match(r"no$|unstable\b", str(cell)) or ": unstable" in str(cell)
+def marked(cell, verdict=False):
+    """A cell, red where it is a bad verdict; that of a row of a sweep is a sentence."""
+    bad = sweep_tables.has_unstable(str(cell)) if verdict else re.match(r"no$|unstable\b", str(cell))
     return f"<span class=bad>{escape(cell)}</span>" if bad else escape(cell)
 
 
@@ -71,7 +71,7 @@ def show(table, folded=False):
     right = [all(numeric(row[k]) for row in table.rows) for k in range(len(table.head))]
     mark = [" class=n" if r else "" for r in right]
     head = "".join(f"<th{m}>{escape(h)}</th>" for m, h in zip(mark, table.head))
-    body = "".join("<tr>" + "".join(f"<td{m}>{marked(c)}</td>" for m, c in zip(mark, row)) + "</tr>" for row in table.rows)
+    body = "".join("<tr>" + "".join(f"<td{m}>{marked(c, 'verdict' in (h, row[0]))}</td>" for m, h, c in zip(mark, table.head, row)) + "</tr>" for row in table.rows)
     note = f"<p class=note>{escape(table.note)}</p>" if table.note else ""
     caption = "" if folded else f"<caption>{escape(table.caption)}</caption>"
     whole = f"<div class=scroll><table>{caption}<tr>{head}</tr>{body}</table></div>{note}"

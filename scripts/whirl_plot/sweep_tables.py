@@ -95,6 +95,11 @@ def verdicts_of(study):
     return {} if words is None else dict(zip(rows_of(study), map(str, words)))
 
 
+def has_unstable(words):
+    """Whether the words of a verdict tell of a machine that is unstable somewhere."""
+    return bool(re.search(r"\bunstable\b|\bloses stability\b", words))
+
+
 def table_of_columns(study, caption, columns, table):
     names, quantity, reasons, verdicts = rows_of(study), quantity_of(study), ended(study), verdicts_of(study)
     rows, head = [[n] for n in names], ["variant"]
@@ -164,7 +169,7 @@ def brief(study):
     variants = study.summary.get("variants", [])
     out = [f"{len(variants)} variants" + (f" over {quantity[0]}" if quantity else "")]
     verdicts = verdicts_of(study)
-    unstable = [n for n in rows_of(study) if "unstable" in verdicts.get(n, "") or "loses stability" in verdicts.get(n, "")]
+    unstable = [n for n in rows_of(study) if has_unstable(verdicts.get(n, ""))]
     if unstable:
         out.append("unstable, at least in part: " + ", ".join(unstable[:6]) + (f" and {len(unstable) - 6} more" if len(unstable) > 6 else ""))
     main = {c["name"]: c for c in main_columns(study)}

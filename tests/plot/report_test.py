@@ -160,6 +160,10 @@ def sweep(folder):
                           ["wide", "-", "240", "6500.0 \u00b1 9.0", "\u2013", "balanced: ended at 7000 rpm: contact"]], table.rows
     assert trends.rows == [["balanced: threshold", "clearance", "160 to 240 \u00b5m", "rises", "2500 rpm"]], trends.rows
     assert "All values of the variants (6)" in everything and "balanced: nondimensional load" in everything
+    red = [report.marked(c, True).startswith("<span") for c in ("loses stability", "stable 300 to 1470, unstable to 3000 rpm", "a: stable; r: unstable",
+                                                                 "stable throughout", "undetermined", "-")]
+    assert red == [True] * 3 + [False] * 3 and everything.count("<span class=bad>loses stability</span>") == 2, (red, everything)
+    assert report.show(table).count("class=bad") == 2 and "class=bad" not in report.marked("where it loses stability"), report.show(table)
     assert words == "2 variants over clearance; unstable, at least in part: as given, narrow; balanced: threshold rises from 4000 to 6500.0 \u00b1 9.0 rpm; 1 with a study that did not complete", words
 
 
