@@ -370,10 +370,12 @@ Edit parse_edit(const std::string& argument, std::string_view cited) {
   const bool append = argument[equals - 1] == '+';
   Edit edit{argument.substr(0, equals - (append ? 1 : 0)), append, {}, place};
   if (edit.path.empty()) fail("expected PATH+=VALUE");
-  // What other programs take for a factor, YAML takes for a name.
+  // What other programs take for a factor, YAML takes for a name; /2024/seal.csv is one.
   std::string_view text = std::string_view(argument).substr(equals + 1);
   while (text.starts_with(' ')) text.remove_prefix(1);
-  if (text.size() > 1 && (text[0] == '*' || text[0] == '/') && (text[1] == '.' || (text[1] >= '0' && text[1] <= '9')))
+  double number = 0;
+  const char* end = text.data() + text.size();
+  if (text.size() > 1 && (text[0] == '*' || text[0] == '/') && std::from_chars(text.data() + 1, end, number).ptr == end)
     fail(fmt::format("'{}' is no value: a factor is written x2, x0.5 or +20 %", text));
   try {
     edit.value = parse_yaml(std::string_view(argument).substr(equals + 1), "value");

@@ -234,6 +234,10 @@ TEST(Edit, ErrorsCiteTheArgument) {
   EXPECT_NE(refusal("bearings.Q.mass=x2").find("there is no 'bearings.Q'; there are "), std::string::npos)
       << refusal("bearings.Q.mass=x2");
   EXPECT_NE(refusal("bearings.B1.mass=*2").find("'*2' is no value: a factor is written x2"), std::string::npos);
+  for (const std::string text : {"*2", "/2", "/.5", "/1.5e3"})
+    EXPECT_NE(refusal("title=" + text).find("is no value: a factor"), std::string::npos) << text;
+  for (const std::string path : {"/2024/seal.csv", "/.cache/seal.csv", "/3d.csv"})
+    EXPECT_EQ(deck::parse_edit("title=" + path, "--set").value.text, path);
   EXPECT_NE(refusal("bearings.B1.elevation=by 5").find("has no unit: expected a length"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.elevation=+5 kg").find("expected a length"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.elevation=x5 um").find("a factor is a bare number"), std::string::npos);
