@@ -94,12 +94,13 @@ std::vector<std::string> unusual_lubricants(const system::Machine& machine) {
 std::vector<std::string> negative_damping(const system::Machine& machine) {
   std::vector<std::string> lines;
   const auto look = [&](const std::string& place, const std::array<double, 4>& constant, const auto& table) {
-    // Rows of a table are added to the constant part.
-    double least_x = constant[0], least_y = constant[3];
+    // The constant part never acts without a row of the table.
+    double least_x = table.empty() ? 0 : table.front().c_xx, least_y = table.empty() ? 0 : table.front().c_yy;
     for (const auto& row : table) {
-      least_x = std::min(least_x, constant[0] + row.c_xx);
-      least_y = std::min(least_y, constant[3] + row.c_yy);
+      least_x = std::min(least_x, row.c_xx);
+      least_y = std::min(least_y, row.c_yy);
     }
+    least_x += constant[0], least_y += constant[3];
     std::vector<std::string> found;
     if (least_x < 0) found.push_back(fmt::format("C_xx = {:.4g} N s/m", least_x));
     if (least_y < 0) found.push_back(fmt::format("C_yy = {:.4g} N s/m", least_y));

@@ -8,6 +8,7 @@
 
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/open_bore.hpp"
+#include "study/sense.hpp"
 #include "support/half_rotor.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -80,6 +81,32 @@ TEST(OpenBores, SaysNothingOfAJournalInItsBoreOrOverAPad) {
   EXPECT_TRUE(study::OpenBores(machine_with({bore(cylindrical, 0)})).empty());
   // A lemon bore of two nearly half circles leaves no gap worth the name.
   EXPECT_TRUE(study::OpenBores(machine_with({bore(lemon_bore, 150 * deg)})).empty());
+}
+
+TEST(NegativeDamping, CountsWithTheTable) {
+  system::Machine machine = machine_with({bore(film::Geometry::Bore::cylindrical, 0)});
+  const auto said = [&](double constant, std::vector<double> rows) {
+    film::Linear film;
+    system::Element seal;
+    seal.name = "seal";
+    film.damping = seal.damping = {500, 0, 0, constant};
+    for (const double c : rows) {
+      film.table.push_back({.c_yy = c});
+      seal.table.push_back({.c_yy = c});
+    }
+    machine.bearings[0].film = film;
+    machine.elements = {seal};
+    return study::negative_damping(machine);
+  };
+  const auto line = [](const std::string& place, const std::string& value) {
+    return place + ": negative damping (C_yy = " + value + " N s/m) feeds the vibration: is its sign right?";
+  };
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(said(100, {}), Lines{});
+  EXPECT_EQ(said(-100, {}), (Lines{line("bearings.B1", "-100"), line("elements.seal", "-100")}));
+  EXPECT_EQ(said(-100, {300, 400}), Lines{}) << "at no speed is it negative";
+  EXPECT_EQ(said(-100, {300, 40}), (Lines{line("bearings.B1", "-60"), line("elements.seal", "-60")}));
+  EXPECT_EQ(said(0, {-5, 40}), (Lines{line("bearings.B1", "-5"), line("elements.seal", "-5")}));
 }
 
 // Thicknesses as one wave of n cells around, and others at rest.
