@@ -254,9 +254,11 @@ def ranks(h):
     with h5py.File(h.work / "on_2/results.h5") as f:
         moved = f["studies/up/run_up/node_amplitude"][0]
     h.true("the shaft moves, its ends and its middle differently", moved.min() > 1e-7 and moved[1] > 1.01 * moved[0], str(moved))
-    # Stiffness over mass of 5000 elements spreads over 1e14: orders of summation are seen at 1e-6 to 1e-5.
-    for what, difference, within in same_results(h.work / "on_1", h.work / "on_2", 1e-4):
-        h.close(f"two ranks: {what}", difference, 0, within)
+    # The ranks take other steps than one rank does: what differs is the error of the steps, a thousandth of the clearance.
+    with h5py.File(h.work / "on_1/results.h5") as one, h5py.File(h.work / "on_2/results.h5") as two:
+        for what in ("amplitude", "x_max", "x_min", "y_max", "y_min", "node_amplitude", "node_x", "node_y"):
+            a, b = (f[f"studies/up/run_up/{what}"][()] for f in (one, two))
+            h.close(f"two ranks: {what} [m]", abs(a - b).max(), 0, 1e-3 * 200e-6)
 
 
 def hysteresis(h):
