@@ -1,12 +1,12 @@
 #include "whirl/transient/estimators.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "transient/fourier.hpp"
+#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::transient {
@@ -101,13 +101,15 @@ LineEstimate estimate(const Eigen::MatrixXcd& s, int inputs, double averages, do
       if (both > 0) out.ordinary(i, j) = std::min(1.0, std::norm(gf(i, j)) / both);
     }
   }
-  const Eigen::FullPivLU<Eigen::MatrixXcd> lu(ff);
-  if (!lu.isInvertible()) return out;
+  using Lu = core::DenseLu<std::complex<double>>;
+  const double regular = std::numeric_limits<double>::epsilon() * static_cast<double>(q);
+  const Lu lu(ff);
+  if (!(lu.rcond() > regular)) return out;
   const Eigen::MatrixXcd inverse = lu.inverse();
   out.h1 = gf * inverse;
   if (p == q) {
-    const Eigen::FullPivLU<Eigen::MatrixXcd> fg(Eigen::MatrixXcd(gf.adjoint()));
-    if (fg.isInvertible()) out.h2 = gg * fg.inverse();
+    const Lu fg(gf.adjoint());
+    if (fg.rcond() > regular) out.h2 = gg * fg.inverse();
   }
   const double factor = std::pow(1 - probability, -1 / (averages - inputs)) - 1;
   for (Eigen::Index i = 0; i < p; ++i) {

@@ -1,4 +1,3 @@
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -6,6 +5,7 @@
 #include <vector>
 
 #include "solve/bifurcation/bordered_monodromy.hpp"
+#include "whirl/core/least_squares.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
@@ -90,7 +90,7 @@ void find_null_vectors(BorderedMonodromy& bordered, const std::vector<double>& p
 
 // Of the invariant plane of `basis`, product = M basis, the complex eigenvector for the eigenvalue nearest to mu.
 VectorXcd eigenvector_in(const MatrixXd& basis, const MatrixXd& product, Complex mu) {
-  const MatrixXd plane = (basis.transpose() * basis).ldlt().solve(basis.transpose() * product);
+  const MatrixXd plane = core::least_squares(basis, product);
   return basis * spectral::eigenpairs(plane).nearest(mu);
 }
 
