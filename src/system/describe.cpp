@@ -351,7 +351,7 @@ void describe(deck::Description<Machine>& d) {
   d.add(
        "service_speed", &Machine::service_speed, "rad/s", positive,
        "speed at which the machine runs: screen and report tell together what the studies found there, and margins are "
-       "counted from it where a study has no operating speed of its own")
+       "counted from it where a study has no operating speed of its own; modes over a range are computed at it as well")
       .only(&Machine::system, rotor);
   d.add("lubricants", &Machine::lubricants, "lubricants by name").only(&Machine::system, rotor);
   d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").only(&Machine::system, rotor).required();

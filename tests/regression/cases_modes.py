@@ -129,6 +129,9 @@ def missing(h):
     service = {f["what"]: f for f in json.loads((h.work / "internal" / "summary.json").read_text())["service_speed"]["facts"]}
     h.true("    stable between speeds of different fate", service["stability"]["mark"] == "stable", str(service["stability"]))
     h.close("    the margin of the service speed [%]", service["margin in speed to the threshold of stability"]["value"], 100 * (1466.98 / 1300 - 1), 0.001)
+    decrement = service["smallest log decrement"]
+    h.true("    a decrement computed at that speed", "mark" not in decrement and
+           any(m["speed"] == 1300 and m["log_decrement"] == decrement["value"] for m in s["over"]["modes"]), str(decrement))
     h.close("    up to the end", value(s["over"], "unstable.1.to"), 3000, 1e-9)
     h.close("    its number", value(s["over"], "unstable.1.mode"), next(m["mode"] for m in s["over"]["modes"] if m["stability"] == "unstable"), 0)
     h.true("    both warn", warned(s["m"], "unstable", "forward") and warned(s["over"], "unstable", "forward", "to 3000"))

@@ -63,11 +63,23 @@ void put_searches(io::Group& group, io::StudySummary& summary, const std::vector
   summary.set("search.missed", missed[0], "1");
 }
 
+// What is true at the speed of service is computed there, with its bars, and not read off between two speeds.
+std::vector<double> with_service_speed(const ModesOptions& options, const std::optional<deck::Quantity>& service) {
+  std::vector<double> speeds = options.all_speeds();
+  if (!options.range || !service || !std::ranges::is_sorted(speeds)) return speeds;
+  const double at = service->value;
+  const auto place = std::ranges::upper_bound(speeds, at);
+  constexpr double same = 1e-9;
+  if (place != speeds.begin() && place != speeds.end() && at - place[-1] > same * at && *place - at > same * at)
+    speeds.insert(place, at);
+  return speeds;
+}
+
 }  // namespace
 
 StudyResult Modes::run(Context& context) {
   if (of_shaft_alone(options)) return modes_of_shaft_alone(context, options);
-  const std::vector<double> speeds = options.all_speeds();
+  const std::vector<double> speeds = with_service_speed(options, context.machine.service_speed);
   const std::vector<double> shape_speeds = options.all_shape_speeds();
   const std::string unit = options.unit();
   const double limit = options.max_frequency.value_or(std::numeric_limits<double>::infinity());
