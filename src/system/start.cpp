@@ -3,6 +3,7 @@
 #include <petscksp.h>
 
 #include "whirl/core/direct_solver.hpp"
+#include "whirl/core/error.hpp"
 
 namespace whirl::system {
 
@@ -30,8 +31,12 @@ core::Vector static_guess(RotorSystem& system) {
   springs.jacobian(0, x.get(), rest.get(), 1, 0, j.get());
   const core::LinearSolver ksp = core::make_direct_solver(system.comm(), "start_");
   check(KSPSetOperators(ksp.get(), j.get(), j.get()));
-  check(KSPSetErrorIfNotConverged(ksp.get(), PETSC_TRUE));
   check(KSPSolve(ksp.get(), f.get(), x.get()));
+  KSPConvergedReason why = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(ksp.get(), &why));
+  if (why < 0)
+    throw core::NotConverged(
+        "nothing holds the rotor against its static load: the stiffness of shaft, bearings and elements is singular");
   check(VecScale(x.get(), -1));
   if (system.own_states() == 0) return x;
   // Films with own states move the rotor to the first rank.

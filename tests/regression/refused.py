@@ -54,6 +54,17 @@ for deck, study in {**CASES, "modes.yaml": "in films", "run_up.yaml": "in 10 s",
     run(f"{deck} of 1e10 kg a segment", deck, h.work / name, 3, f"{study}: no equilibrium near", overrides=["rotor.segments.*.added_mass=1e10 kg"])
     h.true(f"{deck}: the film and its bearing are named", "bearing B" in h.studies(name)[study]["status"], h.studies(name)[study]["status"])
 
+# Bearings without stiffness: the matrix of the static equilibrium is singular, to the last digit or but for rounding.
+(h.work / "loose.yaml").write_text("""title: A rotor that nothing holds
+rotor: {element: rayleigh, segments: [&s {length: 100 mm, diameter: 40 mm}, *s, *s, *s, *s, *s, *s, *s], material: {density: 1 kg/m^3, modulus: 200 GPa},
+  discs: [{node: 5, mass: 50 kg, polar_inertia: 0.6 kg m^2, diametral_inertia: 0.3 kg m^2}]}
+bearings: {A: {node: 1, film: &f {type: linear, stiffness: 0 N/m, damping: 5e3 N s/m}}, B: {node: 9, film: *f}}
+studies: [{static: {speed: 100 rad/s}}]
+""")
+for deck in (h.work / "loose.yaml", h.source / "tests/cases/missing_unstable.yaml"):
+    run(f"{deck.stem} without stiffness", deck, h.work / f"out {deck.stem}", 3, "static: no",
+        overrides=["bearings.*.film.stiffness=0 N/m", "studies=[{static: {speed: 100 rad/s}}]"])
+
 # Results and checkpoints that are damaged are named, not used.
 work = h.work / "damaged"
 run("a study", "static.yaml", work, 0)
