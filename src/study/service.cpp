@@ -49,6 +49,11 @@ std::string joined(const std::string& a, const std::string& b) {
   return a + (a.empty() || b.empty() ? "" : ", ") + b;
 }
 
+// Of a resonance that is too near to the operating speeds of its study.
+std::string near_words(const std::string& verdict, const Quantity& required) {
+  return verdict != "too near" ? "" : fmt::format("TOO NEAR: {:.0f} % required", 100 * required.value);
+}
+
 class Collector {
 public:
   Collector(const deck::Quantity& speed, const io::Group& results) : speed_(speed.value), results_(results) {
@@ -207,7 +212,9 @@ private:
       const Quantity& delta = c.log_decrement;
       if (!std::isfinite(c.speed.value) || delta.value - delta.bar() > damped) continue;
       const std::string more = std::isfinite(delta.value) ? fmt::format("log decrement {:.3g}", delta.value) : "";
-      take_critical(c.speed, joined(more, c.whirl == "backward" ? "backward whirl" : ""), "critical speed", "", s.name);
+      const std::string whirl = c.whirl == "backward" ? "backward whirl" : "";
+      take_critical(c.speed, joined(joined(more, whirl), near_words(c.verdict, c.required_margin)), "critical speed",
+                    "", s.name);
     }
   }
   // The nearest one on either side of the service speed.
@@ -229,7 +236,7 @@ private:
       if (p.place.starts_with("node ") && p.verdict != "damped, not critical" && std::isfinite(p.speed.value)) {
         const double factor = p.amplification_factor.value;
         std::string more = std::isfinite(factor) ? fmt::format("amplification {:.3g}", factor) : "";
-        if (p.verdict == words[undetermined]) more = joined(more, p.verdict);
+        more = joined(more, p.verdict == words[undetermined] ? p.verdict : near_words(p.verdict, p.required_margin));
         if (std::ranges::any_of(p.notes, [](const std::string& note) { return note.starts_with("no answer"); }))
           more = joined(more, "no answer: the motion leaves a bearing too little film");
         take_critical(p.speed, more, "peak", p.place, s.name);
