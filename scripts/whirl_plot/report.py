@@ -62,7 +62,7 @@ def numeric(cell):
 
 
 def marked(cell, verdict=False):
-    """A cell, red where it is a bad verdict; that of a row of a sweep is a sentence."""
+    """A table cell. A bad verdict is red. In the rows of a sweep the verdict is a whole sentence."""
     bad = sweep_tables.has_unstable(str(cell)) if verdict else re.match(r"no$|unstable\b", str(cell))
     return f"<span class=bad>{escape(cell)}</span>" if bad else escape(cell)
 

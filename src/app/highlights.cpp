@@ -119,7 +119,7 @@ std::string of_sweep(const io::StudySummary& s, std::span<const io::StudySummary
   for (std::size_t i = 0; i < rows; ++i) {
     const std::string& name = i < given ? "as given" : s.variants[i - given].name;
     const study::VariantVerdict& verdict = verdicts[i];
-    // Whoever reads the columns of another block sees that the row is marked.
+    // A wide table is printed in several blocks: the name repeats in each, and the mark with it.
     const bool marked = verdict.found > study::Found::stable;
     any_marked = any_marked || marked;
     if (marked && verdict.words != "unstable") told.push_back(name + ": " + verdict.words);

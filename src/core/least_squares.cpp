@@ -21,7 +21,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// `call` as that of LAPACK's gelsy: what is behind the sizes and the matrices.
+// `call` takes the arguments of LAPACK's gelsy, without the real workspace of zgelsy.
 template <class Matrix, class Call>
 Matrix solution(Matrix a, const Matrix& b, const Call& call) {
   require(a.rows() == b.rows(), "as many rows on both sides");

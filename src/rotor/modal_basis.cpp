@@ -78,7 +78,7 @@ PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction) {
     if (projector.values.sum() > static_cast<double>(all_modes - n) + 0.5)
       throw core::InputError("the modes of the shaft do not tell its masters apart: more modes, or fewer masters");
   });
-  // Rounding decides which basis of that space it is: all ranks take that of the first.
+  // Any basis of that space would do, and rounding decides which one is found. So all ranks use that of rank 0.
   core::share(comm, pseudo.data(), static_cast<std::size_t>(pseudo.size()));
   core::share(comm, projector.vectors.data(), static_cast<std::size_t>(projector.vectors.size()));
   const Eigen::MatrixXd held = modes.rows * projector.vectors.rightCols(all_modes - n);

@@ -9,8 +9,7 @@
 namespace whirl::core {
 
 /// P A = L U of a square matrix, rows exchanged for the largest pivot (Eigen::PartialPivLU). Scalar: double or
-/// std::complex<double>. Answers of a singular matrix
-/// mean nothing.
+/// std::complex<double>. The answers of a singular matrix mean nothing; rcond() tells of one.
 template <class Scalar>
 class DenseLu {
 public:

@@ -32,7 +32,7 @@ struct Separation {
 /// A critical speed of `modes` as screen, report, tables and the service speed have it.
 struct CriticalSpeed {
   std::string number;                      ///< by rising speed, from 1
-  io::Quantity speed = {}, mode = {};      ///< the mode is that of the spectrum
+  io::Quantity speed = {}, mode = {};      ///< `mode` is its number in the spectrum
   std::string whirl = {};                  ///< of its mode at the nearest computed speed; empty: not known
   io::Quantity log_decrement = {};         ///< of the mode there, at fixed speed
   io::Quantity amplification_factor = {};  ///< pi/log_decrement; no unit: it has no damping, or it grows
@@ -42,7 +42,7 @@ struct CriticalSpeed {
   std::string verdict = {};    ///< margin_verdict(); without damping of an infinite factor
 };
 
-/// Those of a summary, by rising speed.
+/// The critical speeds that the summary of a `modes` study holds, by rising speed.
 [[nodiscard]] std::vector<CriticalSpeed> critical_speeds_of(const io::StudySummary& summary);
 
 }  // namespace whirl::study
