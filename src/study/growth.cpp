@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <numbers>
+#include <utility>
 
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/summary_bars.hpp"
@@ -82,7 +83,11 @@ void warn_of(const Growth& growth, const std::string& where, const std::string& 
              io::StudySummary& summary) {
   warn_of_waves(growth, where, summary);
   if (!growth.any()) return;
-  summary.warnings.push_back(fmt::format("{} the equilibrium is unstable: {}. {}", where, growth.words(), consequence));
+  warn_first(summary, fmt::format("{} the equilibrium is unstable: {}. {}", where, growth.words(), consequence));
+}
+
+void warn_first(io::StudySummary& summary, std::string words) {
+  summary.warnings.insert(summary.warnings.begin(), std::move(words));
 }
 
 void warn_of_waves(const Growth& growth, const std::string& where, io::StudySummary& summary) {

@@ -49,6 +49,8 @@ void put_growth(const std::vector<double>& packed, const std::string& where, con
 /// Adds the warning "WHERE the equilibrium is unstable: ..., CONSEQUENCE" if something grows; `where` as "at 3600 rpm".
 /// warn_of_waves() is called as well.
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence, io::StudySummary& summary);
+/// Adds a warning before all others: who reads only one reads the gravest.
+void warn_first(io::StudySummary& summary, std::string words);
 /// Says which waves of a film's mesh were left out, if any.
 void warn_of_waves(const Growth& growth, const std::string& where, io::StudySummary& summary);
 

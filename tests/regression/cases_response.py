@@ -60,6 +60,7 @@ def past_threshold(h):
     """The threshold is 9572.6 +- 5.7 rpm."""
     s = h.run(h.source / "tests/cases/past_threshold.yaml", "past_threshold", ["studies.3.unbalance_response.points=23"])["unbalance_response"]
     unstable, = [w for w in s["warnings"] if "equilibrium is unstable" in w]
+    h.true("the gravest warning stands first", s["warnings"][0] == unstable and len(s["warnings"]) > 1, str(s["warnings"]))
     low, high = float(unstable.split("stable at ")[1].split(")")[0]), float(unstable.split("unstable from ")[1].split(" to ")[0])
     h.true("unstable from the threshold on", low < 9572.6 + 5.7 and high > 9572.6 - 5.7 and high - low <= 501, unstable)
     h.true("to the end", "to 12000 rpm" in unstable, unstable)

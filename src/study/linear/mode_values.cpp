@@ -8,6 +8,7 @@
 
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
+#include "study/growth.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -73,8 +74,8 @@ void ModeValues::put_speed(io::StudySummary& summary, const Station& station) co
   put("least_damped", least);
   summary.set(head + "unstable", static_cast<double>(growing.size()), "1");
   if (!growing.empty())
-    summary.warnings.push_back(
-        fmt::format("at {} {} the machine is unstable: {}", number_text(station.speed, unit_), unit_, joined(growing)));
+    warn_first(summary, fmt::format("at {} {} the machine is unstable: {}", number_text(station.speed, unit_), unit_,
+                                    joined(growing)));
 }
 
 // The modes that grow for sure, counted over the speed as a branch counts its eigenvalues.
@@ -180,7 +181,7 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
   table.put("damping_real", real, "1/s", "likewise");
   table.put("begins", begins, "1: it becomes unstable at `from`; 0: the mode or the range of speeds begins there");
   table.put("ends", ends, "1: it becomes stable at `to`; 0: the mode or the range of speeds ends there");
-  if (!ranges.empty()) summary.warnings.push_back("the machine is unstable: " + joined(words));
+  if (!ranges.empty()) warn_first(summary, "the machine is unstable: " + joined(words));
 }
 
 void ModeValues::put_overdamped(io::Group& table, io::StudySummary& summary,

@@ -7,7 +7,11 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "study/growth.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
@@ -74,6 +78,7 @@ void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const st
                         (stable.all_counted() ? std::string(" throughout")
                                               : fmt::format(" at the {} speeds counted", stable.counted()));
   std::string verdict;
+  std::vector<std::string> warned;
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     const StableSpeeds::Stretch& s = stretches[k];
     if (s.stability == "stable") continue;
@@ -83,7 +88,7 @@ void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const st
     if (k > 0 && s.stability == "unstable" && stretches[k - 1].stability == "stable")
       where += fmt::format(" (stable at {})", shown(stretches[k - 1].to));
     verdict += (verdict.empty() ? "" : ", ") + s.stability + " " + where;
-    summary.warnings.push_back(
+    warned.push_back(
         s.stability == "unstable"
             ? fmt::format(
                   "the equilibrium is unstable {}: no vibration settles into the linear response there, and its "
@@ -91,6 +96,7 @@ void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const st
                   where)
             : fmt::format("whether the equilibrium is stable {} is not known: eigenvalues may be missing", where));
   }
+  for (auto line = warned.rbegin(); line != warned.rend(); ++line) warn_first(summary, std::move(*line));
   if (stretches.size() > 1) summary.stability = verdict;
 }
 
