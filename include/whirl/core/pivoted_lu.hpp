@@ -37,27 +37,28 @@ public:
   /// The angle of det A [rad] but for whole turns: the determinant itself may overflow.
   [[nodiscard]] double angle() const;
 
-  /// x = A^-1 y and x = A^-T y (not conjugated) of n x columns numbers each, which do not overlap.
-  void solve(const Scalar* y, Scalar* x, Eigen::Index columns) const;
-  void solve_transposed(const Scalar* y, Scalar* x, Eigen::Index columns) const;
+  /// A^-1 y and A^-T y (not conjugated) of a vector or of all columns.
   template <class Y>
   [[nodiscard]] typename Y::PlainObject solve(const Eigen::MatrixBase<Y>& y) const {
-    const auto& right = y.derived().eval();
-    require(right.rows() == size(), "right-hand sides of the size of the matrix");
-    typename Y::PlainObject x(right.rows(), right.cols());
-    solve(right.data(), x.data(), right.cols());
-    return x;
+    return answer(&PivotedLu::solve, y.derived().eval());
   }
   template <class Y>
   [[nodiscard]] typename Y::PlainObject solve_transposed(const Eigen::MatrixBase<Y>& y) const {
-    const auto& right = y.derived().eval();
-    require(right.rows() == size(), "right-hand sides of the size of the matrix");
-    typename Y::PlainObject x(right.rows(), right.cols());
-    solve_transposed(right.data(), x.data(), right.cols());
-    return x;
+    return answer(&PivotedLu::solve_transposed, y.derived().eval());
   }
+  /// x = A^-1 y and A^-T y of n x columns numbers each, which do not overlap.
+  void solve(const Scalar* y, Scalar* x, Eigen::Index columns) const;
+  void solve_transposed(const Scalar* y, Scalar* x, Eigen::Index columns) const;
 
 private:
+  template <class Plain>
+  [[nodiscard]] Plain answer(void (PivotedLu::*by)(const Scalar*, Scalar*, Eigen::Index) const, const Plain& y) const {
+    static_assert(!Plain::IsRowMajor, "columns one behind the other");
+    require(y.rows() == size(), "right-hand sides of the size of the matrix");
+    Plain x(y.rows(), y.cols());
+    (this->*by)(y.data(), x.data(), y.cols());
+    return x;
+  }
   struct Factors;
   std::unique_ptr<Factors> factors_;
 };
