@@ -44,12 +44,14 @@ std::optional<Verdict> passing(const Evidence& e, int period, const char* turns)
 // How far points move at the end of the record over how far at its beginning, by a straight line through the
 // logarithms.
 struct Trend {
-  double ratio = 1, uncertainty = std::numeric_limits<double>::infinity();
+  double change = 0, uncertainty = std::numeric_limits<double>::infinity();  // of the logarithm
   [[nodiscard]] std::string text() const {
-    return std::isfinite(uncertainty)
-               ? fmt::format("moves {:.4g} +- {:.1g} times as far at the end of the record as at its beginning", ratio,
-                             uncertainty)
-               : "too few points to tell a drift";
+    constexpr double linear = 0.2;
+    if (!std::isfinite(uncertainty)) return "too few points to tell a drift";
+    const double ratio = std::exp(change);
+    return (uncertainty < linear ? fmt::format("moves {:.4g} +- {:.1g} times", ratio, ratio * uncertainty)
+                                 : fmt::format("moves about {:.2g} times", ratio)) +
+           " as far at the end of the record as at its beginning";
   }
 };
 
@@ -64,15 +66,14 @@ Trend trend(const Evidence& e) {
     slope += (static_cast<double>(k) - (n - 1) / 2) * std::log(e.course[k]) / spread;
   for (std::size_t k = 0; k < e.course.size(); ++k)
     rest += std::pow(std::log(e.course[k]) - mean - slope * (static_cast<double>(k) - (n - 1) / 2), 2);
-  const double ratio = std::exp(slope * (n - 1));
-  return {ratio, sure * ratio * (n - 1) * std::sqrt(rest / (n - 2) / spread)};
+  return {slope * (n - 1), sure * (n - 1) * std::sqrt(rest / (n - 2) / spread)};
 }
 
 // What does not repeat itself may be on its way to something else. Null if the record has no direction.
 std::optional<Verdict> drifting(const Evidence& e) {
   constexpr double least = 0.01;
   const Trend t = trend(e);
-  if (!(std::abs(t.ratio - 1) > std::max(least, t.uncertainty))) return std::nullopt;
+  if (!(std::abs(t.change) > std::max(least, t.uncertainty))) return std::nullopt;
   return Verdict{Kind::unsettled, 0, "unsettled", t.text()};
 }
 
@@ -149,7 +150,7 @@ std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& po
 }
 
 std::vector<double> course_of_returns(const std::vector<std::vector<double>>& points, MPI_Comm comm) {
-  constexpr std::size_t pieces = 8, fewest = 8;
+  constexpr std::size_t pieces = 8, fewest = 2;
   const std::size_t of_each = points.empty() ? 0 : (points.size() - 1) / pieces;
   if (of_each < fewest) return {};
   std::vector<double> out(pieces, 0.0);
@@ -167,7 +168,7 @@ Verdict classify(const Evidence& e) {
                 (known(e) ? ", " + largest(e) : "")};
   if (e.size < e.rest) {
     if (!e.exponents.empty() && sign_of(e, 0) == Sign::positive)
-      return {Kind::unsettled, 0, "unsettled", "at rest although deviations grow: " + largest(e)};
+      return {Kind::unsettled, 0, "unsettled", "at rest, but a disturbance grows: " + largest(e)};
     if (!e.grows.empty())
       return {Kind::unsettled, 0, "unsettled",
               fmt::format("at rest at an unstable equilibrium, where a disturbance grows: {}", e.grows)};

@@ -36,6 +36,12 @@ def divergence(h):
     s = h.run(deck, "as it is", launcher=[])
     h.true("the branch is unstable, and the motion does not rest", s["b"]["stability"] == "unstable throughout" and "motion.unsettled" in s["mo"]["values"],
            f"{s['b']['stability']} {list(s['mo']['values'])}")
+    h.true("the motion says why", warned(s["mo"], "has not settled", "diverges", "+311.3"), str(s["mo"].get("warnings")))
+    # What is linear cannot be chaotic: it grows without bound.
+    cross = "bearings={left: {node: 1, film: {type: linear, stiffness: [1e6 N/m, 1e5 N/m, -1e5 N/m, 1e6 N/m], damping: 100 N s/m}}}"
+    s = h.run(deck, "grows", ["unbalance={u: {planes: [{node: 1, amount: 1e-5 kg m}]}}", cross,
+                              "studies=[{motion: {name: g, unbalance: [u], speed: 100 rad/s, discard: 20, revolutions: 20}}]"], launcher=[])["g"]
+    h.true("a linear motion that grows", "motion.unsettled" in s["values"] and warned(s, "has not settled", "times as far"), f"{list(s['values'])[:3]} {s.get('warnings')}")
     # The same spring in the middle of a shaft, whole and reduced; another film speaks for seals.
     shaft = h.source / "tests/cases/friswell_591.yaml"
     seal = "bearings.seal={node: 4, film: {type: linear, stiffness: [-8e6 N/m, 0 N/m, 0 N/m, 1e5 N/m], damping: 500 N s/m}}"

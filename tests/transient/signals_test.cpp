@@ -171,6 +171,7 @@ TEST(Verdicts, ASpiralIsNoTorus) {
   EXPECT_EQ(verdict(record(1.00001, 400)).kind, Kind::quasi_periodic) << "0.4 %";
   EXPECT_EQ(verdict(record(1, 400)).kind, Kind::quasi_periodic);
   EXPECT_EQ(verdict(record(1.0003, 60)).kind, Kind::quasi_periodic) << "too few to tell";
+  EXPECT_EQ(verdict(record(1.6, 20)).kind, Kind::unsettled) << "few are enough where all grows";
   const auto course = course_of_returns(record(1.001, 801));
   ASSERT_EQ(course.size(), 8U);
   EXPECT_NEAR(course[7] / course[0], std::pow(1.001, 700), 5e-3) << "the angle within a piece is not the same in all";

@@ -45,7 +45,7 @@ struct Verdict {
                                                     MPI_Comm comm = MPI_COMM_SELF);
 
 /// Root mean square of |P_(i+1) - P_i| within each eighth of the record, one after the other; empty if an eighth has
-/// fewer than eight points. Collective on `comm`.
+/// fewer than two points. Collective on `comm`.
 [[nodiscard]] std::vector<double> course_of_returns(const std::vector<std::vector<double>>& points,
                                                     MPI_Comm comm = MPI_COMM_SELF);
 

@@ -200,6 +200,8 @@ private:
     group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
     put_places(group, context_.machine, system_);
     record_.write(group, summary);
+    if (const auto verdict = record_.verdict(); verdict.kind == transient::Kind::unsettled)
+      warn_first(summary, "the motion has not settled: " + verdict.reason);
     if (OpenBores bores(context_.machine); !bores.empty()) {
       record_.for_samples([&](std::size_t place, double x, double y) { bores.see(place, x, y, 0); });
       bores.warn(summary, "");
