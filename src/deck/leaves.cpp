@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "known.hpp"
 #include "name_of_value.hpp"
@@ -196,17 +197,20 @@ public:
   explicit IntegerCodec(Spec s) : spec_(std::move(s)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     if (!is_scalar(node, "a whole number", r)) return;
-    int v = 0;
+    double v = 0;  // 1e6 is a whole number, too
     const char* first = node.text.data();
     const char* last = first + node.text.size();
     const auto [end, code] = std::from_chars(first, last, v);
-    if (code != std::errc() || end != last)
+    if (code != std::errc() || end != last || v != std::trunc(v))
       return r.problems.add(node.place,
                             fmt::format("{} must be a whole number, not {}", name_of_value(node), node.text));
-    if (!spec_.check.holds(v))
-      return r.problems.add(node.place,
-                            fmt::format("{} must be {}, not {}", name_of_value(node), spec_.check.text(), v));
-    *static_cast<int*>(value) = v;
+    constexpr double most = std::numeric_limits<int>::max();
+    if (!spec_.check.holds(v) || std::abs(v) > most)
+      return r.problems.add(
+          node.place,
+          fmt::format("{} must be {}, not {}", name_of_value(node),
+                      spec_.check.holds(v) ? "between -2147483647 and 2147483647" : spec_.check.text(), node.text));
+    *static_cast<int*>(value) = static_cast<int>(v);
   }
   Node write(const void* value) const override {
     return Node::scalar(fmt::format("{}", *static_cast<const int*>(value)));
