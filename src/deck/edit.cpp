@@ -98,7 +98,8 @@ std::string changed(const std::string& text, const Relative& r, const Spec& spec
   } else {
     sum = to_si(text, unit) + to_si(r.offset, unit == "K" ? "delta K" : unit);
   }
-  return write_rounded(now.unit.empty() ? sum : from_si(sum, now.unit)) + (now.unit.empty() ? "" : " " + now.unit);
+  return write_rounded(now.unit.empty() ? sum : from_si(sum, now.unit, unit)) +
+         (now.unit.empty() ? "" : " " + now.unit);
 }
 
 class Application {

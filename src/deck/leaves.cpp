@@ -35,7 +35,7 @@ std::string unit_words(const std::string& unit) {
 
 // The unit behind a number in messages.
 std::string_view plain_unit(std::string_view unit) {
-  return unit == "1" || unit == "*" ? "" : unit == "delta K" ? "K" : unit;
+  return unit == "1" || unit == "*" ? "" : coherent(unit);
 }
 
 // Reads the quantity `node` for `spec`; false if a problem was added. `unit` is the unit as written.
@@ -101,7 +101,7 @@ public:
   Node write(const void* value) const override {
     const double v = *static_cast<const double*>(value);
     if (spec_.unit == "1" || spec_.unit == "*") return Node::scalar(write_number(v));
-    return Node::scalar(write_quantity(v, spec_.unit), true);
+    return Node::scalar(write_quantity(v, coherent(spec_.unit)), true);
   }
   Node schema(bool) const override { return quantity_schema(spec_); }
   std::string type() const override { return with_bounds(unit_words(spec_.unit), spec_.check); }
@@ -124,8 +124,8 @@ public:
   }
   Node write(const void* value) const override {
     const auto& q = *static_cast<const Quantity*>(value);
-    const std::string unit = q.unit.empty() && spec_.unit != "*" ? spec_.unit : q.unit;
-    return Node::scalar(write_quantity(q.value, unit), !unit.empty() && unit != "1");
+    const std::string unit(q.unit.empty() && spec_.unit != "*" ? coherent(spec_.unit) : q.unit);
+    return Node::scalar(write_quantity(q.value, unit, spec_.unit), !unit.empty() && unit != "1");
   }
   Node schema(bool) const override { return quantity_schema(spec_); }
   std::string type() const override { return with_bounds(unit_words(spec_.unit), spec_.check); }
@@ -150,7 +150,7 @@ public:
     if (!from || !to) return r.problems.add(node.place, wanted);
     std::string to_unit;
     if (!read_real(*from, spec_, r, range.from, &range.unit) || !read_real(*to, spec_, r, range.to, &to_unit)) return;
-    if (!same_kind(range.unit, to_unit))
+    if (spec_.unit == "*" && !same_kind(range.unit, to_unit))
       return r.problems.add(to->place, fmt::format("'{}' and '{}' are not of the same kind", from->text, to->text));
     if (range.unit.empty()) range.unit = "1";
     // Results divide by the unit of the range and take steps in it, which a unit that has its zero elsewhere does not
@@ -160,11 +160,11 @@ public:
   }
   Node write(const void* value) const override {
     const auto& range = *static_cast<const Range*>(value);
-    const std::string unit = range.unit.empty() && spec_.unit != "*" ? spec_.unit : range.unit;
+    const std::string unit(range.unit.empty() && spec_.unit != "*" ? coherent(spec_.unit) : range.unit);
     const bool text = !unit.empty() && unit != "1";
     Node n = Node::map();
-    n.set("from", Node::scalar(write_quantity(range.from, unit), text));
-    n.set("to", Node::scalar(write_quantity(range.to, unit), text));
+    n.set("from", Node::scalar(write_quantity(range.from, unit, spec_.unit), text));
+    n.set("to", Node::scalar(write_quantity(range.to, unit, spec_.unit), text));
     return n;
   }
   Node schema(bool whole) const override {

@@ -233,7 +233,7 @@ std::string entry_text(const std::string& key, const Option& o) {
   const Spec* spec = o.codec->spec();
   std::string out = fmt::format("{}\n    {}{}{}", key, o.codec->type(), value.empty() ? "" : "; ", value);
   if (spec && spec->unit != "1" && spec->unit != "*" && spec->letter.empty())
-    out += fmt::format("; 0, or {} in size", plausible(spec->unit).text(spec->unit == "delta K" ? "K" : spec->unit));
+    out += fmt::format("; 0, or {} in size", plausible(spec->unit).text(coherent(spec->unit)));
   out += fmt::format("\n    {}{}\n", o.text, o.source.empty() ? "" : " [" + o.source + "]");
   for (const Alias& a : o.aliases)
     out += a.factor == 1 ? fmt::format("    may be written '{}'\n", a.key)

@@ -27,7 +27,7 @@ Magnitude plausible(std::string_view unit) {
       {"Pa s", {1e-9, 1e6}},     {"kg/m^3", {1e-6, 1e6}}, {"N", {1e-15, 1e15}},    {"N/m", {1e-12, 1e20}},
       {"N s/m", {1e-15, 1e18}},  {"m/s", {1e-15, 1e6}},   {"m/s^2", {1e-12, 1e8}}, {"kg m", {1e-18, 1e10}},
       {"kg m^2", {1e-24, 1e15}}, {"byte", {1e6, 1e15}},   {"Hz", {1e-9, 1e9}}};
-  const auto at = bounds.find(unit);
+  const auto at = bounds.find(coherent(unit));
   return at == bounds.end() ? Magnitude{} : at->second;
 }
 

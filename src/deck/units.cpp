@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "whirl/core/error.hpp"
@@ -167,8 +168,7 @@ Unit parse_unit(std::string_view text, std::string_view si = "*") {
 constexpr std::string_view difference = "delta K";
 
 std::string_view plain(std::string_view si) {
-  if (si == "1") return {};
-  return si == difference ? std::string_view("K") : si;
+  return si == "1" ? std::string_view() : coherent(si);
 }
 
 // A hint does not make a pressure (MPa) of a viscosity (mPas).
@@ -180,6 +180,16 @@ std::vector<std::string> common_units_of(std::string_view si) {
   return units;
 }
 
+// The unit in which something of kind `si` is written. A frequency may be given by its cycles: 1 Hz is 2 pi rad/s.
+Unit unit_of(std::string_view text, std::string_view si) {
+  Unit u = parse_unit(plain(text), si);
+  static const auto cycles = parse_unit("Hz").powers;
+  if (si != frequency || !text.ends_with("Hz") || u.powers != cycles) return u;
+  u.powers = parse_unit(plain(si)).powers;
+  u.scale *= 2 * std::numbers::pi;
+  return u;
+}
+
 std::string expected(std::string_view si) {
   static const std::map<std::string, std::string, std::less<>> examples{
       {"m", "a length such as 180 um"},
@@ -188,6 +198,7 @@ std::string expected(std::string_view si) {
       {"rad/s", "a speed such as 3600 rpm or 377 rad/s"},
       {"rad", "an angle such as 60 deg"},
       {"Hz", "a frequency such as 50 Hz"},
+      {std::string(frequency), "a frequency such as 60 Hz, 3600 rpm or 377 rad/s"},
       {"K", "a temperature such as 60 degC"},
       {"delta K", "a temperature difference such as 20 K"},
       {"Pa", "a pressure such as 1.5 bar"},
@@ -254,7 +265,7 @@ double to_si(std::string_view text, std::string_view si) {
   if (s.unit.empty() && si != "*") throw InputError(fmt::format("'{}' has no unit: expected {}", text, expected(si)));
   if (s.unit == si || (s.unit == "K" && si == difference)) return s.number;
   check_kind(s.unit, si);
-  const double value = apply(parse_unit(s.unit), s.number);
+  const double value = apply(unit_of(s.unit, si), s.number);
   if (!std::isfinite(value)) throw InputError(fmt::format("'{}' is not a finite number in SI units", text));
   return value;
 }
@@ -263,19 +274,23 @@ double number_to_si(double number, std::string_view unit) {
   return apply(parse_unit(plain(unit)), number);
 }
 
-double from_si(double value, std::string_view unit) {
-  const Unit u = parse_unit(plain(unit));
+double from_si(double value, std::string_view unit, std::string_view si) {
+  const Unit u = unit_of(unit, si);
   const double inverse = std::round(1 / u.scale);
   if (u.offset == 0 && u.scale < 1 && std::abs(inverse * u.scale - 1) < 1e-15) return value * inverse;
   return (value - u.offset) / u.scale;
 }
 
 bool same_kind(std::string_view unit, std::string_view other) {
-  return parse_unit(plain(unit)).powers == parse_unit(plain(other)).powers;
+  return unit_of(unit, other).powers == unit_of(other, unit).powers;
+}
+
+std::string_view coherent(std::string_view si) {
+  return si == difference ? std::string_view("K") : si == frequency ? std::string_view("rad/s") : si;
 }
 
 void check_kind(std::string_view unit, std::string_view si) {
-  require_kind(parse_unit(plain(unit), si), unit, si);
+  require_kind(unit_of(unit, si), unit, si);
 }
 
 std::string write_number(double value) {
@@ -315,10 +330,10 @@ std::string scaled(std::string_view text, double factor) {
   return write_rounded(now.number * factor) + " " + now.unit;
 }
 
-std::string write_quantity(double value, std::string_view unit) {
+std::string write_quantity(double value, std::string_view unit, std::string_view si) {
   if (unit.empty() || unit == "1") return write_number(value);
-  const Unit u = parse_unit(plain(unit));
-  const double number = from_si(value, unit);
+  const Unit u = unit_of(unit, si);
+  const double number = from_si(value, unit, si);
   for (int digits = 1; digits <= 17; ++digits) {
     const std::string text = fmt::format("{:.{}g}", number, digits);
     double read = 0;

@@ -56,6 +56,26 @@ TEST(Units, FrequenciesAreNotSpeeds) {
   EXPECT_NE(refusal("50 Bq", "Hz").find("becquerel"), std::string::npos);
 }
 
+// Of a transfer function: by cycles or by angle.
+TEST(Units, FrequenciesInCyclesOrAngles) {
+  const std::string_view si = deck::frequency;
+  EXPECT_NEAR(to_si("60 Hz", std::string(si)), 120 * pi, 1e-11);
+  EXPECT_NEAR(to_si("0.06 kHz", std::string(si)), 120 * pi, 1e-11);
+  EXPECT_EQ(to_si("3600 rpm", std::string(si)), to_si("3600 rpm", "rad/s"));
+  EXPECT_EQ(to_si("377 rad/s", std::string(si)), 377);
+  for (const char* other : {"60 1/s", "3600 1/min", "60 m"})
+    EXPECT_NE(refusal(other, std::string(si)).find("a frequency such as 60 Hz, 3600 rpm or 377 rad/s"),
+              std::string::npos)
+        << other;
+  EXPECT_NEAR(deck::from_si(120 * pi, "Hz", si), 60, 1e-13);
+  EXPECT_NEAR(deck::from_si(120 * pi, "rpm", si), 3600, 1e-11);
+  EXPECT_EQ(deck::write_quantity(to_si("60 Hz", si), "Hz", si), "60 Hz");
+  EXPECT_EQ(deck::write_quantity(to_si("0.1 Hz", si), "Hz", si), "0.1 Hz");
+  EXPECT_TRUE(deck::same_kind("Hz", si));
+  EXPECT_TRUE(deck::same_kind(si, "rpm"));
+  EXPECT_FALSE(deck::same_kind("N", si));
+}
+
 TEST(Units, NamesThatEngineersWrite) {
   EXPECT_NEAR(to_si("60 deg", "rad"), pi / 3, 1e-15);
   EXPECT_NEAR(to_si("1 rev", "rad"), 2 * pi, 1e-14);

@@ -31,9 +31,13 @@ struct Split {
 ///
 /// The kind of quantity must be that of `si`, angles included: a speed ("rad/s") takes rpm, rad/s, deg/s, but neither
 /// Hz nor 1/min; "1" takes bare numbers only, every other unit requires one; "K" is an absolute temperature and takes
-/// degC, "delta K" a temperature difference and does not; "*" takes any unit.
+/// degC, "delta K" a temperature difference and does not; `frequency` takes Hz beside all that a speed takes; "*" takes
+/// any unit.
 /// Throws core::InputError without a place, saying what was expected.
 [[nodiscard]] double to_si(std::string_view text, std::string_view si);
+
+/// The kind of a circular frequency in rad/s that may be written in Hz as well: 1 Hz is 2 pi rad/s.
+inline constexpr std::string_view frequency = "rad/s or Hz";
 
 /// `text` ("180 um", "3") times `factor` in its own unit, rounded to 15 digits. Throws core::InputError (without a
 /// place) if it is no number, if the result is not finite, or if the unit has its zero elsewhere (degC).
@@ -43,11 +47,15 @@ struct Split {
 /// 66.00000000000001. Throws core::InputError (without a place) if it is not finite.
 [[nodiscard]] std::string write_rounded(double value);
 
-/// `value` (SI) as a number in `unit`; throws core::InputError if `unit` is not one.
-[[nodiscard]] double from_si(double value, std::string_view unit);
+/// `value` (SI, of the kind `si`: a frequency in rad/s may have the unit Hz) as a number in `unit`; throws
+/// core::InputError if `unit` is not one.
+[[nodiscard]] double from_si(double value, std::string_view unit, std::string_view si = "*");
 
 /// Value in SI of `number` in `unit`.
 [[nodiscard]] double number_to_si(double number, std::string_view unit);
+
+/// The unit of a kind: K of "delta K", rad/s of `frequency`, else the kind itself.
+[[nodiscard]] std::string_view coherent(std::string_view si);
 
 /// True if both units measure the same kind of quantity.
 [[nodiscard]] bool same_kind(std::string_view unit, std::string_view other);
@@ -55,8 +63,8 @@ struct Split {
 /// Throws core::InputError (without a place) unless a value written in `unit` suits an option of SI unit `si`.
 void check_kind(std::string_view unit, std::string_view si);
 
-/// Shortest text `number unit` that reads back to exactly `value` (SI).
-[[nodiscard]] std::string write_quantity(double value, std::string_view unit);
+/// Shortest text `number unit` that reads back, for an option of unit `si`, to exactly `value` (SI).
+[[nodiscard]] std::string write_quantity(double value, std::string_view unit, std::string_view si = "*");
 
 /// A size of memory in round numbers, "1.2 GB".
 [[nodiscard]] std::string write_memory(double bytes);

@@ -62,7 +62,7 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range");
   d.add("count", &ModesOptions::count, deck::in(1, 1e5),
         "modes at each speed, those of lowest frequency with a damping ratio below 0.9; modes that grow come on top");
-  d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
+  d.add("max_frequency", &ModesOptions::max_frequency, std::string(deck::frequency), deck::positive,
         "whirl frequency up to which modes are reported");
   d.add("operating", &ModesOptions::operating, "rad/s", deck::positive,
         "operating speeds, lowest to highest, from which separation margins of critical speeds are counted",
