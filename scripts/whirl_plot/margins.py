@@ -4,7 +4,8 @@ from .units import digits, with_bar
 MARGIN_HEAD = ["margin [%]", "required [%]", "enough"]
 MARGIN_NOTE = "margin to the operating speed, required by API 617 and API 684 (2005), 2.5: none below an amplification factor of 2.5"
 # The program's verdicts in the column that asks whether the margin is enough.
-ENOUGH = {"too near": "no", "far enough": "yes", "damped, not critical": "damped", "undetermined": "undetermined"}
+ENOUGH = {"too near": "no", "far enough": "yes", "damped, not critical": "damped", "undetermined": "undetermined", "not excited": "not excited"}
+NOT_EXCITED = "not excited: backward whirl on circles, which unbalance does not excite on these supports"
 
 
 def operating_in(study):

@@ -8,7 +8,7 @@ from . import sweep_tables
 from .bifurcation import Followed
 from .campbell import EITHER
 from .locus import WORDS as LOCUS_WORDS
-from .margins import MARGIN_HEAD, margin_cells, margin_note, operating_in
+from .margins import MARGIN_HEAD, NOT_EXCITED, margin_cells, margin_note, operating_in
 from .response import number, peaks_at
 from .style import speed_axis
 from .units import WORDS, digits, number as number_of, person, quantity, scale_of, with_bar
@@ -89,6 +89,7 @@ def modes(study):
         head = ["critical", f"speed [{unit}]", "mode", "whirl", "log. decrement \u03b4", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
         head += [""] * (max(map(len, rows + damped), default=0) - len(head))
         note = margin_note(operating, unit) if operating else ""
+        note += f"; {NOT_EXCITED}" if "not excited" in np.atleast_1d([] if verdicts is None else verdicts) else ""
         out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
         if damped:
             out.append(Table("Damped, not critical: amplification factor below 2.5 (API 684)", head, damped))

@@ -88,7 +88,12 @@ std::string of_modes(const io::StudySummary& s, const Values& v) {
       grid.add(std::move(row));
   }
   for (auto& row : damped) grid.add(std::move(row));
-  return grid.text();
+  std::string out = grid.text();
+  if (std::ranges::find(criticals, study::not_excited, &study::CriticalSpeed::verdict) != criticals.end())
+    out += in_lines(fmt::format("{}: backward whirl on circles, which unbalance does not excite on these supports",
+                                study::not_excited),
+                    4);
+  return out;
 }
 
 namespace {

@@ -48,6 +48,13 @@ WhirlEnergy whirl_energy(const std::vector<std::complex<double>>& x, const std::
   return out;
 }
 
+bool turns_backward(const std::vector<std::complex<double>>& shape) {
+  constexpr double rounding = 1e-5;  // a forward circle of this part of the backward one
+  const auto middle = shape.begin() + static_cast<std::ptrdiff_t>(shape.size() / 2);
+  return !shape.empty() &&
+         whirl_energy({shape.begin(), middle}, {middle, shape.end()}).forward < 2 * rounding * rounding - 1;
+}
+
 Sense sense_of_whirl(const WhirlEnergy& energy) {
   if (energy.whirl < planar_below) return Sense::planar;
   const double share = (energy.whirl + energy.forward) / (2 * energy.whirl);

@@ -51,6 +51,7 @@ std::string joined(const std::string& a, const std::string& b) {
 
 // Of a resonance that is too near to the operating speeds of its study.
 std::string near_words(const std::string& verdict, const Quantity& required) {
+  if (verdict == not_excited) return "which unbalance does not excite on these supports";
   return verdict != "too near" ? "" : fmt::format("TOO NEAR: {:.0f} % required", 100 * required.value);
 }
 

@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "study/linear/mode_margins.hpp"
 
 using whirl::study::separation;
 
@@ -22,6 +25,31 @@ TEST(Separation, IsZeroInsideTheRange) {
   EXPECT_NEAR(separation(3100, 8, 3000, 3600).required, 0.143846, 1e-6);
   EXPECT_NEAR(separation(3500, 8, 3000, 3600).required, 0.243846, 1e-6);
   EXPECT_EQ(separation(3000, 8, 3000, 3000).actual, 0);
+}
+
+// By its mode, of which unbalance knows nothing; a critical speed that is far enough needs no word of that.
+TEST(Separation, IsNotAskedOfWhirlThatUnbalanceDoesNotExcite) {
+  using namespace whirl;
+  io::StudySummary summary;
+  const auto put = [&](const char* number, double speed, double mode, bool excited) {
+    const std::string head = std::string("critical.") + number + ".";
+    summary.set(head + "speed", speed, "rpm");
+    summary.set(head + "mode", mode, "1");
+    if (!excited) summary.set(head + "excited", 0, "1");
+    study::put_margins(summary, head, speed, 0.01, 0.012, 1e-9, deck::Range{1480, 1480, "rpm"});
+  };
+  put("1", 1587, 1, false);
+  put("2", 1590, 2, true);
+  put("3", 3600, 3, false);
+  for (const int mode : {1, 2, 3}) {
+    summary.modes.push_back({1480, 0, 0, 0, mode == 2 ? "mixed" : "backward", "rpm"});
+    summary.modes.back().more["mode"] = mode;
+  }
+  const auto all = study::critical_speeds_of(summary);
+  ASSERT_EQ(all.size(), 3);
+  EXPECT_EQ(all[0].verdict, study::not_excited);
+  EXPECT_EQ(all[1].verdict, "too near");
+  EXPECT_EQ(all[2].verdict, "far enough");
 }
 
 TEST(Separation, IsNotAskedOfDampedPeaks) {

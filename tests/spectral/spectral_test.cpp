@@ -276,6 +276,11 @@ TEST(Words, ForModes) {
   // Half-axes 1 and 0.5 forward: f = 0.75, b = 0.25, so that (f^2 - b^2)/(f^2 + b^2) = 0.8.
   EXPECT_DOUBLE_EQ(spectral::whirl_energy({1}, {-0.5 * i}).whirl, 0.8);
   EXPECT_DOUBLE_EQ(spectral::whirl_energy({1}, {-0.5 * i}).forward, 0.8);
+  EXPECT_TRUE(spectral::turns_backward({1, 2, i, 2.0 * i}));
+  EXPECT_TRUE(spectral::turns_backward({1, 2, i, 2.00001 * i})) << "rounding";
+  for (const std::vector<Complex>& shape :
+       std::vector<std::vector<Complex>>{{1, 2, i, 2.01 * i}, {1, 2, -i, -2.0 * i}, {1, 2, i, -2.0 * i}, {1, 1}, {}})
+    EXPECT_FALSE(spectral::turns_backward(shape));
   // A line at 45 degrees, and an orbit of half-axes 1 and 0.04: 2 a b/(a^2 + b^2) = 0.08.
   EXPECT_EQ(spectral::sense_of_whirl({1}, {1}), Sense::planar);
   EXPECT_EQ(spectral::sense_of_whirl({1}, {-0.04 * i}), Sense::planar);

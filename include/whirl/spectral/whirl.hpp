@@ -24,6 +24,11 @@ struct WhirlEnergy {
                                        const std::vector<std::complex<double>>& y,
                                        const std::vector<double>& mass = {});
 
+/// Whether all nodes of a shape (x at the nodes, then y) turn on backward circles, but for rounding: as a rotor with
+/// supports alike in both directions does. Its forces have no forward part then, and those of unbalance, which turn
+/// forward, do no work on it.
+[[nodiscard]] bool turns_backward(const std::vector<std::complex<double>>& shape);
+
 /// In a word: planar if `whirl` is below 0.1, an orbit of half-axes 20 to 1; else forward or backward if at least nine
 /// tenths of the whirling energy turn so; mixed if neither.
 [[nodiscard]] Sense sense_of_whirl(const WhirlEnergy& energy);

@@ -231,6 +231,7 @@ StudyResult Modes::run(Context& context) {
     double speed, decrement;
     int id;
     double error, decrement_error;
+    bool excited;  // by unbalance
   };
   std::vector<Critical> criticals;
   std::vector<CrossingPoint> points;
@@ -256,7 +257,8 @@ StudyResult Modes::run(Context& context) {
                       c.guide.id, critical ? "has a critical speed" : "becomes stable or unstable",
                       deck::from_si(c.s0, unit), deck::from_si(c.s1, unit), unit));
     if (critical && !twice[i])
-      criticals.push_back({points[i].speed, spectral::log_decrement(points[i].lambda), c.guide.id, errors[i], bar[2]});
+      criticals.push_back({points[i].speed, spectral::log_decrement(points[i].lambda), c.guide.id, errors[i], bar[2],
+                           !spectral::turns_backward(points[i].shape)});
   }
 
   auto& spectrum = group.child("spectrum");
@@ -292,6 +294,7 @@ StudyResult Modes::run(Context& context) {
     summary.set(fmt::format("critical.{}.log_decrement", k + 1), criticals[k].decrement, "1",
                 bars.as_bar(criticals[k].decrement_error));
     summary.set(fmt::format("critical.{}.mode", k + 1), criticals[k].id, "1");
+    if (!criticals[k].excited) summary.set(fmt::format("critical.{}.excited", k + 1), 0, "1");
     put_margins(summary, fmt::format("critical.{}.", k + 1), criticals[k].speed, criticals[k].error,
                 criticals[k].decrement, criticals[k].decrement_error, operating);
   }

@@ -67,6 +67,10 @@ std::vector<CriticalSpeed> critical_speeds_of(const io::StudySummary& summary) {
       if (!nearest || std::abs(m.speed - speed.value) < std::abs(nearest->speed - speed.value)) nearest = &m;
     }
     if (nearest) c.whirl = nearest->whirl;
+    const bool excited = std::ranges::find(summary.values, fmt::format("{}{}.excited", head, c.number),
+                                           [](const auto& v) { return v.first; }) == summary.values.end();
+    if (!excited && c.whirl == "backward" && (c.verdict == "too near" || c.verdict == "undetermined"))
+      c.verdict = not_excited;
     out.push_back(std::move(c));
   }
   return out;

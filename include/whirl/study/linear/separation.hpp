@@ -39,8 +39,12 @@ struct CriticalSpeed {
   io::Quantity separation_margin = {};     ///< no unit: no operating speed is known; so of the next
   io::Quantity required_margin = {};
   std::string stability = {};  ///< stable, undamped, unstable
-  std::string verdict = {};    ///< margin_verdict(); without damping of an infinite factor
+  /// margin_verdict(), without damping of an infinite factor; `not_excited` where the mode turns backward on circles.
+  std::string verdict = {};
 };
+
+/// Of a critical speed that is not far enough, and that unbalance does not excite.
+inline constexpr const char* not_excited = "not excited";
 
 /// The critical speeds that the summary of a `modes` study holds, by rising speed.
 [[nodiscard]] std::vector<CriticalSpeed> critical_speeds_of(const io::StudySummary& summary);
