@@ -300,7 +300,7 @@ StudyResult Modes::run(Context& context) {
   }
   warn_of_amplification(summary);
   put_criticals(group.child("critical"), summary);
-  if (operating && options.range) put_operating_range(summary, *operating, unit);
+  if (operating && options.range) put_operating_range(summary, *operating, *options.range);
 
   put_bearings(group, context.machine);
   std::vector<std::span<const ShaftMode>> shaped;

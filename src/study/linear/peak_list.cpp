@@ -51,8 +51,21 @@ std::string narrow_words(bool endless) {
                      peak_tolerance);
 }
 
-void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit) {
+void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const deck::Range& range) {
+  const std::string& unit = range.unit;
+  const auto [first, last] = std::minmax(range.from, range.to);
   const double low = deck::from_si(operating.from, unit), high = deck::from_si(operating.to, unit);
+  constexpr double rounding = 1e-9;
+  const auto below = [](double a, double b) { return a < b * (1 - rounding); };
+  const auto warn = [&](const char* does, double end, const char* place, const char* beyond) {
+    summary.warnings.push_back(fmt::format(
+        "the range {} at {:.6g} {}, {} the operating speed{} ({:.6g}{} {}): margins of what lies {} {:.6g} {} are not "
+        "judged",
+        does, deck::from_si(end, unit), unit, place, low == high ? "" : "s", low,
+        low == high ? "" : fmt::format(" to {:.6g}", high), unit, beyond, deck::from_si(end, unit), unit));
+  };
+  if (below(last, operating.to)) warn("ends", last, below(last, operating.from) ? "below" : "within", "above");
+  if (below(operating.from, first)) warn("begins", first, below(operating.to, first) ? "above" : "within", "below");
   if (low == high) return summary.set("operating_speed", low, unit);
   summary.set("operating_range.from", low, unit);
   summary.set("operating_range.to", high, unit);

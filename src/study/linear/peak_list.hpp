@@ -39,8 +39,9 @@ struct PeakValue {
 /// What a peak that is too narrow for a height says of itself: that of a mode without damping is `endless`.
 [[nodiscard]] std::string narrow_words(bool endless);
 
-/// Puts "operating_speed", or "operating_range.from" and ".to" where they differ.
-void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const std::string& unit);
+/// Puts "operating_speed", or "operating_range.from" and ".to" where they differ, in the unit of the `range` that was
+/// looked at. Warns where this leaves operating speeds out.
+void put_operating_range(io::StudySummary& summary, const deck::Range& operating, const deck::Range& range);
 
 /// Warns of amplification factors of peaks and critical speeds above high_amplification, in one sentence.
 void warn_of_amplification(io::StudySummary& summary);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 
 namespace whirl::study {
@@ -126,6 +127,29 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
       }
     });
   bars.write([&](const std::string& name, double value) { return location_of(peaks, name, value); });
+}
+
+void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<NamedPeak>& named,
+                        const std::vector<int>& nodes, double operating_rounding) {
+  // The error that the mesh of the shaft leaves in a value, relative to it; zero of one that is but rounding.
+  const auto by_shaft = [&](const std::string& name, double rounding) {
+    for (const auto& [of, q] : summary.values)
+      if (const auto error = q.more.find("uncertainty_shaft_mesh"); of == name && error != q.more.end())
+        return std::abs(q.value) > rounding ? error->second / std::abs(q.value) : 0;
+    return 0.0;
+  };
+  double of_speeds = 0, of_heights = 0, of_operating = 0;
+  for (const NamedPeak& p : named) {
+    of_speeds = std::max(of_speeds, by_shaft(p.head + "speed", 0));
+    of_heights = std::max(of_heights, by_shaft(p.head + "semi_major", 0));
+  }
+  for (const int node : nodes)
+    of_operating =
+        std::max(of_operating, by_shaft(fmt::format("operating.node.{}.semi_major", node), operating_rounding));
+  warn_of_shaft_mesh(summary, rotor,
+                     {{"the speeds of these peaks", of_speeds, most_of_frequency},
+                      {"the heights of these peaks", of_heights, most_of_amplitude},
+                      {"the amplitudes at operating speed", of_operating, most_of_amplitude}});
 }
 
 }  // namespace whirl::study

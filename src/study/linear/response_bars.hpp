@@ -48,4 +48,9 @@ using PutPeak = std::function<void(io::StudySummary& to, const std::string& head
 void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
                        std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve);
 
+/// Warns where the mesh of the shaft leaves much in the values of peaks or in the amplitudes of `nodes` at operating
+/// speed, of which less than `operating_rounding` [m] is but rounding.
+void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<NamedPeak>& named,
+                        const std::vector<int>& nodes, double operating_rounding);
+
 }  // namespace whirl::study

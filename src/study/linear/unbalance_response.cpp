@@ -359,26 +359,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
       summary.stability.starts_with(word))
     summary.stability.replace(0, word.size(), "stable or undamped");
   warn_of_amplification(summary);
-  // The error that the mesh of the shaft leaves in a value, relative to it; zero of one that is but rounding.
-  const auto by_shaft = [&](const std::string& name, double rounding) {
-    for (const auto& [of, q] : summary.values)
-      if (const auto error = q.more.find("uncertainty_shaft_mesh"); of == name && error != q.more.end())
-        return std::abs(q.value) > rounding ? error->second / std::abs(q.value) : 0;
-    return 0.0;
-  };
-  double of_speeds = 0, of_heights = 0, of_operating = 0;
-  for (const NamedPeak& p : named) {
-    of_speeds = std::max(of_speeds, by_shaft(p.head + "speed", 0));
-    of_heights = std::max(of_heights, by_shaft(p.head + "semi_major", 0));
-  }
-  for (const int node : nodes)
-    of_operating =
-        std::max(of_operating, by_shaft(fmt::format("operating.node.{}.semi_major", node), operating_rounding));
-  warn_of_shaft_mesh(summary, context.machine.rotor,
-                     {{"the speeds of these peaks", of_speeds, most_of_frequency},
-                      {"the heights of these peaks", of_heights, most_of_amplitude},
-                      {"the amplitudes at operating speed", of_operating, most_of_amplitude}});
-  if (operating) put_operating_range(summary, *operating, unit);
+  warn_of_shaft_mesh(summary, context.machine.rotor, named, nodes, operating_rounding);
+  if (operating) put_operating_range(summary, *operating, options.range);
   auto& response = group.child("response");
   response.put("speed", speeds_of(curve), "rad/s", "shaft speed");
   response.put("node", std::vector<std::int64_t>(nodes.begin(), nodes.end()), "shaft nodes, 1-based");
