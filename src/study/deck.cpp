@@ -177,6 +177,7 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
 
 std::vector<std::string> unusual(const system::Machine& machine, BarsFrom bars) {
   std::vector<std::string> all = unusual_lubricants(machine);
+  for (std::string& line : unusual_material(machine)) all.push_back(std::move(line));
   for (std::string& line : negative_damping(machine)) all.push_back(std::move(line));
   for (std::string& line : rotor::impossible_inertias(machine.rotor)) all.push_back(std::move(line));
   if (bars == BarsFrom::none)

@@ -34,7 +34,7 @@ bool is_laminar(const film::Options& film) {
   return true;
 }
 
-// What a kind of fluid has; zero is a number that was not given.
+// What a kind of fluid or a material has; zero is a number that was not given.
 struct Usual {
   const char* what;
   double least, most;
@@ -52,6 +52,9 @@ void judge(double value, const Usual& usual, const std::string& name, std::vecto
 constexpr Usual liquid_viscosity{"viscosity", 1e-4, 3,
                                  "mPa s",     1e3,  "water has 0.3 to 1.8 mPa s, oils 2 to 3000 mPa s"};
 constexpr Usual liquid_density{"density", 500, 3000, "kg/m^3", 1, "oils have about 870 kg/m^3, water 1000"};
+// From plastics to tungsten carbide.
+constexpr Usual modulus{"modulus", 1e9, 1e12, "GPa", 1e-9, "steel has about 206 GPa, aluminium 70 GPa"};
+constexpr Usual shear_modulus{"shear modulus", 3e8, 5e11, "GPa", 1e-9, "steel has about 80 GPa, aluminium 26 GPa"};
 constexpr Usual gas_viscosity{"viscosity", 5e-6, 1e-4, "mPa s", 1e3, "air has 0.018 mPa s at 20 degC"};
 
 }  // namespace
@@ -88,6 +91,16 @@ std::vector<std::string> unusual_lubricants(const system::Machine& machine) {
     for (std::string& line : here)
       if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
   }
+  return lines;
+}
+
+std::vector<std::string> unusual_material(const system::Machine& machine) {
+  std::vector<std::string> lines;
+  if (!system::is_rotor(machine) || machine.rotor.type == rotor::Options::Type::rigid) return lines;
+  const rotor::Material& material = machine.rotor.material;
+  for (const auto& [temperature, value] : material.modulus)
+    if (lines.empty()) judge(value, modulus, "rotor.material", lines);
+  judge(material.shear_modulus, shear_modulus, "rotor.material", lines);
   return lines;
 }
 

@@ -26,6 +26,9 @@ inline constexpr double white_metal_load = 5e6, white_metal_pressure = 20e6;  //
 /// Lubricants whose viscosity or density is that of no fluid of their kind, a line each: a unit may be wrong.
 [[nodiscard]] std::vector<std::string> unusual_lubricants(const system::Machine& machine);
 
+/// Moduli of the shaft that are those of no solid it could be made of, a line each: a unit may be wrong.
+[[nodiscard]] std::vector<std::string> unusual_material(const system::Machine& machine);
+
 /// Linear bearings and elements whose direct damping is negative, a line each: they feed the whirl.
 [[nodiscard]] std::vector<std::string> negative_damping(const system::Machine& machine);
 

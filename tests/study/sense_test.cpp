@@ -83,6 +83,26 @@ TEST(OpenBores, SaysNothingOfAJournalInItsBoreOrOverAPad) {
   EXPECT_TRUE(study::OpenBores(machine_with({bore(lemon_bore, 150 * deg)})).empty());
 }
 
+TEST(UnusualMaterial, IsOneThatIsOffByAThousand) {
+  system::Machine machine = machine_with({});
+  const auto said = [&](double modulus, double shear) {
+    machine.rotor.material.modulus = {{300, modulus}, {600, 0.8 * modulus}};
+    machine.rotor.material.shear_modulus = shear;
+    return study::unusual_material(machine);
+  };
+  machine.rotor.type = rotor::Options::Type::shaft;
+  EXPECT_TRUE(said(206e9, 0).empty()) << "steel";
+  EXPECT_TRUE(said(45e9, 17e9).empty()) << "magnesium";
+  EXPECT_TRUE(said(600e9, 250e9).empty()) << "tungsten carbide";
+  ASSERT_EQ(said(200e6, 79e6).size(), 2) << "one line of a table";
+  EXPECT_EQ(said(200e6, 0).front(),
+            "rotor.material: a modulus of 0.2 GPa is unusual (steel has about 206 GPa, aluminium 70 GPa): is its unit "
+            "right?");
+  EXPECT_NE(said(206e9, 79e12).front().find("shear modulus of 7.9e+04 GPa"), std::string::npos);
+  machine.rotor.type = rotor::Options::Type::rigid;
+  EXPECT_TRUE(said(200e6, 0).empty()) << "it has none";
+}
+
 TEST(NegativeDamping, CountsWithTheTable) {
   system::Machine machine = machine_with({bore(film::Geometry::Bore::cylindrical, 0)});
   const auto said = [&](double constant, std::vector<double> rows) {
