@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "whirl/io/record.hpp"
 #include "whirl/rotor/hinges.hpp"
 #include "whirl/study/study.hpp"
@@ -15,7 +17,11 @@ void check_unbalance(const std::vector<std::string>& names, const system::Machin
                      const deck::Report& report) {
   if (names.empty()) report.fail("unbalance", "'unbalance' is empty");
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == system::unbalance_of_discs && !system::find_unbalance(machine, names[i])) {
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i))
+      report.fail(fmt::format("unbalance.{}", i + 1),
+                  fmt::format("'{}' stands in this list already: it would count twice", names[i]));
+    else if (names[i] == system::unbalance_of_discs && !system::find_unbalance(machine, names[i])) {
       if (!system::discs_force(machine))
         report.fail(fmt::format("unbalance.{}", i + 1), "no disc has an 'eccentricity' or a 'skew'");
     } else if (!system::find_unbalance(machine, names[i]))
