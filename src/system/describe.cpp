@@ -170,7 +170,8 @@ void describe(deck::Description<Plane>& d) {
 
 void describe(deck::Description<Unbalance>& d) {
   d.add("grade", &Unbalance::grade, "balance grade, e Omega at the service speed", "ISO 21940-11").continuable();
-  d.add("service_speed", &Unbalance::service_speed, "rad/s", positive, "speed for which the grade holds");
+  d.add("service_speed", &Unbalance::service_speed, "rad/s", positive,
+        "speed for which the grade holds; the 'service_speed' of the machine if not given");
   d.add("rotor", &Unbalance::rotor,
         "rotor to which the grade applies, by the name in its segments; not needed where they have one name or none");
   d.add(
@@ -183,7 +184,6 @@ void describe(deck::Description<Unbalance>& d) {
   d.add("planes", &Unbalance::planes, "where the unbalance sits").required();
   d.check([](const Unbalance& u, const deck::Report& r) {
     if (u.planes.empty()) r.fail("planes", "'planes' is empty");
-    if (u.grade && !u.service_speed) r.fail("grade", "a grade needs 'service_speed'");
     if (!u.grade && u.mass.of != BalanceMass::Of::rotor) r.fail("mass", "'mass' has no meaning without 'grade'");
     if (!u.grade && u.service_speed) r.fail("service_speed", "'service_speed' has no meaning without 'grade'");
     for (std::size_t i = 0; i < u.planes.size(); ++i) {
@@ -295,6 +295,11 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
       else if (u.planes[i].node > n_nodes)
         r.fail(fmt::format("{}.planes.{}.node", path, i + 1),
                fmt::format("node {} does not exist: the shaft has nodes 1 to {}", u.planes[i].node, n_nodes));
+    if (u.grade && !u.service_speed && !m.service_speed)
+      r.fail(
+          path + ".grade",
+          "a grade needs the speed for which it holds: give 'service_speed' here beside it, or to the machine, beside "
+          "'rotor'");
     if (u.rotor.empty() && u.grade && rotors.size() > 1 && u.mass.of != BalanceMass::Of::given)
       r.fail(path + ".grade", fmt::format("a grade needs 'rotor', the name of the rotor it applies to: one of {}",
                                           fmt::join(rotors, ", ")));
@@ -351,7 +356,9 @@ void describe(deck::Description<Machine>& d) {
   d.add(
        "service_speed", &Machine::service_speed, "rad/s", positive,
        "speed at which the machine runs: screen and report tell together what the studies found there, and margins are "
-       "counted from it where a study has no operating speed of its own; modes over a range are computed at it as well")
+       "counted from it where a study has no operating speed of its own; modes over a range are computed at it as "
+       "well; "
+       "balance grades hold for it unless they have a speed of their own")
       .only(&Machine::system, rotor);
   d.add("lubricants", &Machine::lubricants, "lubricants by name").only(&Machine::system, rotor);
   d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").only(&Machine::system, rotor).required();

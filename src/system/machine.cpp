@@ -125,7 +125,8 @@ double graded_mass(const Machine& m, const Unbalance& u) {
 }
 
 std::vector<UnbalanceMass> unbalance_masses(const Machine& m, const Unbalance& u) {
-  const double whole = u.grade ? graded_mass(m, u) * u.grade->velocity / *u.service_speed : 0;
+  const auto speed = [&] { return u.service_speed ? *u.service_speed : m.service_speed.value().value; };
+  const double whole = u.grade ? graded_mass(m, u) * u.grade->velocity / speed() : 0;
   std::vector<UnbalanceMass> masses;
   for (const Plane& p : u.planes) {
     const double amount = u.grade ? *p.fraction * whole : p.eccentricity ? *p.eccentricity * m.rotor.mass : *p.amount;

@@ -48,6 +48,8 @@ def grades(h):
     h.close("mass: span, between the bearings about the middle [kg m]", span, 0.890e-3, 0.0005e-3)
     given = value(h.run(deck, "given", ["unbalance.grade.mass=1200 kg"])["g"], "unbalance.grade.plane.1")
     h.close("mass: 1200 kg [kg m]", given, 1200 * unit, 1e-9)
+    own = value(h.run(deck, "own", ["unbalance.grade={grade: G6.3, rotor: FAN, planes: [{node: 6, fraction: 1}]}", "service_speed=3000 rpm"])["g"], "unbalance.grade.plane.1")
+    h.close("a grade without a speed has that of the machine [kg m]", own, unit * mass / 2, 1e-12)
     pump = h.run(CASES / "grade_between_seals.yaml", "seals")["g"]
     whole = sum(value(pump, f"unbalance.g63.plane.{k}") for k in (1, 2, 3))
     h.close("pump with seals among its bearings [kg m]", whole, 2.366e-3, 0.0005e-3)

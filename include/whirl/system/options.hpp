@@ -61,11 +61,11 @@ struct BalanceMass {
   double given = 0;  ///< [kg]
 };
 
-/// A named unbalance. With a grade: U = fraction M e_u, e_u = grade / service_speed. Source: ISO 21940-11.
+/// A named unbalance. With a grade: U = fraction M e_u, e_u = grade / service speed. Source: ISO 21940-11.
 struct Unbalance {
   std::string name;
   std::optional<BalanceGrade> grade;
-  std::optional<double> service_speed;  ///< [rad/s]
+  std::optional<double> service_speed;  ///< [rad/s]; empty: that of the machine
   std::string rotor;                    ///< empty: the whole shaft
   BalanceMass mass;
   std::vector<Plane> planes;
