@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Linear responses of small machines: false peaks, unstable equilibria, amplification, sense, the service speed.
 
-cases_response.py PROGRAM SOURCE [LAUNCHER WORDS...]
+cases_response.py PROGRAM SOURCE MPIRUN...
 """
 import json
 import subprocess
 import sys
 
+import h5py
+import numpy as np
 from harness import Harness, kill, value
 
 
@@ -129,6 +131,67 @@ def wide(h):
     h.true("frequencies pass over it", warned(s["t"], "pass over resonances", "498.65 rad/s", "(node.2.x.from.node.2.x reaches ", " m/N at it, ", " m/N at the frequencies beside)"), str(s["t"].get("warnings")))
 
 
+def near(h):
+    """A backward critical speed 5 % above the service speed: unbalance excites it where the supports differ, and not where they are alike."""
+    deck = h.source / "tests/cases/overhung_grade.yaml"
+    modes = "studies=[{modes: {name: m, range: {from: 400 rpm, to: 1000 rpm}, points: 5, count: 2}}, {unbalance_response: {name: r, unbalance: [amount], range: {from: 100 rpm, to: 600 rpm}, points: 9, nodes: [6]}}]"
+    for name, more in (("alike", []), ("other", ["bearings.*.film.stiffness=[1e8 N/m, 0 N/m, 0 N/m, 9e7 N/m]"])):
+        out = h.run(deck, name, [modes, "service_speed=700 rpm", *more])
+        with h5py.File(h.work / name / "results.h5") as f:
+            table = f["studies/m/critical"]
+            first = {k: table[k][0].decode() for k in ("whirl", "verdict")}
+        fact = next(f for f in whole(h, name)["service_speed"]["facts"] if f["what"] == "critical speed above")
+        h.true(f"{name}: backward", first["whirl"] == "backward", str(first))
+        h.true("    its verdict", first["verdict"] == ("not excited" if name == "alike" else "too near"), str(first))
+        h.true("    at the service speed", ("unbalance does not excite" in fact["mark"]) == (name == "alike") != ("TOO NEAR" in fact["mark"]), str(fact))
+        h.true("    it is the only one with that value", (value(out["m"], "critical.1.excited") == 0) == (name == "alike"), str(out["m"]["values"]))
+        h.true("    margins beyond the range are not judged", warned(out["r"], "the range ends at 600 rpm, below the operating speed (700 rpm)", "above 600 rpm are not judged"), str(out["r"].get("warnings")))
+        h.true("    those within are", not warned(out["m"], "not judged"), str(out["m"].get("warnings")))
+
+
+UNDAMPED = """
+rotor: {type: rigid, mass: 10 kg}
+gravity: 0 m/s^2
+bearings: {A: {node: 1, film: {type: linear, stiffness: 3947841.7604357433 N/m}}}
+unbalance: {U: {planes: [{node: 1, amount: 300 g mm}]}}
+studies:
+  - frequency_response: {name: hit, speed: 1000 rpm, range: {from: 90 Hz, to: 110 Hz}, points: 21, inputs: [{node: 1, direction: x}]}
+  - frequency_response: {name: last, speed: 1000 rpm, range: {from: 5400 rpm, to: 6000 rpm}, points: 21, inputs: [{node: 1, direction: x}], coefficients: true}
+  - frequency_response: {name: none, speed: 1000 rpm, range: {from: 100 Hz, to: 6000.0000000001 rpm}, points: 2, inputs: [{node: 1, direction: x}]}
+  - unbalance_response: {name: u_last, unbalance: [U], range: {from: 5400 rpm, to: 6000 rpm}, points: 21}
+  - unbalance_response: {name: u_first, unbalance: [U], range: {from: 6000 rpm, to: 6600 rpm}, points: 21, refine: false, operating_speed: 6000 rpm}
+"""
+
+
+def undamped(h, mpirun):
+    """sqrt(k/m) is 6000 rpm = 100 Hz: at it there is no answer, beside it there is, 1/(k - m w^2), on any number of ranks."""
+    deck = h.work / "undamped.yaml"
+    deck.write_text(UNDAMPED)
+    k, m = 3947841.7604357433, 10
+    for ranks in (1, 2):
+        out = h.run(deck, f"undamped {ranks}", launcher=[] if ranks == 1 else [*mpirun, "-n", "2"], code=3)
+        with h5py.File(h.work / f"undamped {ranks}" / "results.h5") as f:
+            rows = {name: f[f"studies/{name}/response/frequency"][()] for name in ("hit", "last")}
+            reals = {name: f[f"studies/{name}/response/machine/node.1.x.from.node.1.x/real"][()] for name in rows}
+            speeds, answers, major = (f[f"studies/u_last/response/{c}"][()] for c in ("speed", "answer", "semi_major"))
+        for name, lost, where in (("hit", 10, "100 Hz"), ("last", 20, "6000 rpm")):
+            s = out[name]
+            h.true(f"{name}: one row without an answer, {ranks} ranks", s["status"] == "1 of 21 frequencies have no answer" and list(np.flatnonzero(np.isnan(reals[name]))) == [lost], s["status"])
+            h.true("    said where and why", warned(s, f"no answer at {where}: the equations are singular there, as at an undamped resonance"), str(s.get("warnings")))
+            others = np.isfinite(reals[name])
+            h.close("    the others", np.abs(reals[name][others] * (k - m * rows[name][others] ** 2) - 1).max(), 0, 1e-9)
+            h.close("    grows without limit at", value(s, "node.1.x.from.node.1.x.largest_at"), float(where.split()[0]), 1e-6)
+        h.true("a study of such rows alone has no answer", "undamped resonance" in out["none"]["status"] and out["none"]["points"] == 0, out["none"]["status"])
+        for name, op in (("u_last", 0), ("u_first", 1)):
+            s = out[name]
+            h.true(f"{name}: one speed without a response", s["status"] == "1 of 21 speeds have no response", s["status"])
+            h.true("    said where and why", warned(s, "no response at 6000 rpm: the equations are singular there"), str(s.get("warnings")))
+            h.true("    at the operating speed too", warned(s, "no response at the operating_speed of 6000 rpm") == bool(op), str(s.get("warnings")))
+        h.true("its row has no numbers", answers[-1] == 0 and np.isnan(major[-1]).all() and np.isfinite(major[:-1]).all() and answers[:-1].all(), str(major[-3:]))
+        w = 2 * np.pi / 60 * 5400
+        h.close("beside it U w^2/(k - m w^2) [m]", major[0, 0], 3e-4 * w**2 / (k - m * w**2), 1e-12)
+
+
 def flushed(h):
     """What a study found stands on a file's screen while the next one still runs."""
     studies = ("studies=[{static: {name: quick, speed: 4000 rpm}}, {unbalance_response: {name: long, unbalance: [u], nodes: [3], points: 20000, "
@@ -140,8 +203,9 @@ def flushed(h):
 
 
 if __name__ == "__main__":
-    program, source, *launcher = sys.argv[1:]
-    harness = Harness(program, source, launcher)
-    for case in (false_peaks, always_unstable, past_threshold, turbine, pump, wide, flushed):
+    program, source, *mpirun = sys.argv[1:]
+    harness = Harness(program, source, [])
+    for case in (false_peaks, always_unstable, past_threshold, turbine, pump, wide, near, flushed):
         case(harness)
+    undamped(harness, mpirun)
     harness.finish()

@@ -5,6 +5,7 @@
 #include "whirl/core/error.hpp"
 #include "whirl/core/index.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/solve/newton/frequency_response.hpp"
 
 namespace whirl::solve {
 
@@ -125,8 +126,7 @@ void EliminatedResponse::factorise(double omega) {
       values[place_[e]] += value;
     }
   }
-  if (!lu_.factorise(matrix_))
-    throw core::NotConverged("the response at this frequency could not be solved: the matrix is singular");
+  if (!lu_.factorise(matrix_)) throw core::NotConverged(singular_at_frequency);
 }
 
 void EliminatedResponse::solve(const std::vector<double>& right, std::vector<double>& amplitude) const {

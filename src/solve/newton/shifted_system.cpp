@@ -8,6 +8,7 @@
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/shell.hpp"
+#include "whirl/solve/newton/frequency_response.hpp"
 
 namespace whirl::solve {
 
@@ -84,7 +85,7 @@ void ShiftedSystem::solve(bool adjoint, Vec rhs, Vec z) {
     return;
   }
   check(adjoint ? KSPSolveTranspose(solver_.get(), rhs, z) : KSPSolve(solver_.get(), rhs, z));
-  if (core::reason_of(solver_.get()) < 0) throw core::NotConverged("the matrix at this frequency is singular");
+  if (core::reason_of(solver_.get()) < 0) throw core::NotConverged(singular_at_frequency);
 }
 
 void ShiftedSystem::solve(Vec rhs, Vec z) {

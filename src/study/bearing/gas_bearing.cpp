@@ -11,8 +11,8 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/gas_rows.hpp"
 #include "study/bearing/held_film.hpp"
-#include "study/bearing/lost_points.hpp"
 #include "study/common.hpp"
+#include "study/lost_points.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 

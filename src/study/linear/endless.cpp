@@ -12,6 +12,7 @@
 #include "study/growth.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/rounded.hpp"
+#include "whirl/solve/newton/frequency_response.hpp"
 
 namespace whirl::study {
 
@@ -39,7 +40,7 @@ Between between(const std::vector<double>& frequencies, const std::vector<std::c
   Between out{narrow_resonances(eigenvalues, frequencies, search), {}, {}};
   std::erase_if(out.narrow, [](const Resonance& r) { return r.undamped; });
   const std::vector<Resonance> undamped =
-      undamped_resonances(eigenvalues, frequencies.front(), frequencies.back(), search);
+      undamped_resonances(eigenvalues, frequencies.front() * (1 - at_pole), frequencies.back() * (1 + at_pole), search);
   std::vector<double> beside;
   for (const Resonance& r : out.narrow) beside.push_back(around(r)[1]);
   for (const Resonance& r : undamped)
@@ -48,6 +49,18 @@ Between between(const std::vector<double>& frequencies, const std::vector<std::c
   out.endless = endless_of(undamped, std::span(out.at_narrow).subspan(out.narrow.size()));
   out.at_narrow.resize(out.narrow.size());
   return out;
+}
+
+std::vector<std::string> leave_out_poles(const std::vector<double>& frequencies, std::vector<std::string> reasons,
+                                         const std::vector<Endless>& endless,
+                                         std::vector<std::vector<std::complex<double>>>& found) {
+  for (std::size_t k = 0; k < frequencies.size(); ++k)
+    for (const Endless& pole : endless) {
+      if (std::abs(frequencies[k] - pole.frequency) > at_pole * pole.frequency) continue;
+      std::ranges::fill(found[k], io::no_value);
+      if (reasons[k].empty()) reasons[k] = solve::singular_at_frequency;
+    }
+  return reasons;
 }
 
 std::vector<double> packed_spectrum(const solve::Stability& found) {
@@ -83,9 +96,9 @@ bool put_endless(io::StudySummary& summary, const ResponseName& name, std::size_
   for (std::size_t k = 0; k < endless.size(); ++k) {
     if (!endless[k].responses[response]) continue;
     std::map<std::string, double> bar;
-    if (!bars.empty()) bar["uncertainty"] = deck::from_si(bars[k], unit);
+    if (!bars.empty()) bar["uncertainty"] = deck::from_si(bars[k], unit, deck::frequency);
     summary.set(name.name + ".largest", std::numeric_limits<double>::infinity(), name.unit);
-    summary.set(name.name + ".largest_at", deck::from_si(endless[k].frequency, unit), unit, bar);
+    summary.set(name.name + ".largest_at", deck::from_si(endless[k].frequency, unit, deck::frequency), unit, bar);
     return true;
   }
   return false;
@@ -100,9 +113,10 @@ void warn_of_endless(io::StudySummary& summary, const std::vector<Endless>& endl
     for (std::size_t e = 0; e < names.size(); ++e)
       if (endless[k].responses[e]) of.push_back(names[e].name);
     const double bar = bars.empty() ? io::no_value : bars[k];
-    all.push_back(fmt::format(
-        "{} ({}{})", io::with_uncertainty(deck::from_si(endless[k].frequency, unit), deck::from_si(bar, unit), unit),
-        of.front(), of.size() > 1 ? fmt::format(" and {} more", of.size() - 1) : ""));
+    all.push_back(fmt::format("{} ({}{})",
+                              io::with_uncertainty(deck::from_si(endless[k].frequency, unit, deck::frequency),
+                                                   deck::from_si(bar, unit, deck::frequency), unit),
+                              of.front(), of.size() > 1 ? fmt::format(" and {} more", of.size() - 1) : ""));
   }
   if (all.empty()) return;
   const std::size_t n = std::min(shown, all.size());

@@ -43,6 +43,13 @@ struct Between {
                               const std::vector<std::complex<double>>& eigenvalues, const ResonanceSearch& search,
                               const std::function<std::vector<Transfer>(const std::vector<double>&)>& at);
 
+/// Why each of the frequencies has no answer (empty: it has one): `reasons` says why its functions were not computed,
+/// or it is an undamped resonance but for rounding; then they are made not a number.
+[[nodiscard]] std::vector<std::string> leave_out_poles(const std::vector<double>& frequencies,
+                                                       std::vector<std::string> reasons,
+                                                       const std::vector<Endless>& endless,
+                                                       std::vector<std::vector<std::complex<double>>>& found);
+
 /// What grows about an equilibrium, as packed(), and all eigenvalues [1/s], in numbers that ranks and pieces of a
 /// checkpoint hold; the other two take these apart, and find nothing in none.
 [[nodiscard]] std::vector<double> packed_spectrum(const solve::Stability& found);

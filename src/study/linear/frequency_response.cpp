@@ -23,6 +23,7 @@
 #include "study/linear/passed_over.hpp"
 #include "study/linear/resonances.hpp"
 #include "study/linear/transfer_points.hpp"
+#include "study/lost_points.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/linear.hpp"
@@ -32,25 +33,8 @@ namespace whirl::study {
 namespace {
 
 using Complex = std::complex<double>;
-using Matrices = std::vector<std::vector<Complex>>;  // per frequency
-
-// What rounding leaves of a matrix, per frequency.
-using Roundings = std::vector<std::vector<double>>;
-
 void append(std::vector<double>& out, const std::vector<Complex>& matrix) {
   for (const Complex& g : matrix) out.insert(out.end(), {g.real(), g.imag()});
-}
-
-std::vector<double> pack(const Transfer& found) {
-  std::vector<double> flat = found.rounding;
-  append(flat, found.values);
-  return flat;
-}
-Transfer unpack_transfer(const std::vector<double>& flat) {
-  const std::size_t n = flat.size() / 3;
-  Transfer out{{}, {flat.begin(), flat.begin() + static_cast<std::ptrdiff_t>(n)}};
-  for (std::size_t e = n; e < flat.size(); e += 2) out.values.emplace_back(flat[e], flat[e + 1]);
-  return out;
 }
 
 // The machine with constant stiffness and damping in place of its films.
@@ -87,6 +71,14 @@ public:
         walker_(system_),
         matrix_(system_, options_.inputs, outputs_) {}
 
+  // Throws core::NotConverged where there is no equilibrium.
+  void linearise() {
+    if (linearised_) return;
+    const Vec x = walker_.at(options_.speed.value);
+    matrix_.linearise(x);
+    whole_ = system_.gather(x);
+    linearised_ = true;
+  }
   Transfer at(const Way& way, double omega) {
     linearise();
     if (way.films == Way::Films::whole) return matrix_.at(omega);
@@ -117,13 +109,6 @@ public:
   }
 
 private:
-  void linearise() {
-    if (linearised_) return;
-    const Vec x = walker_.at(options_.speed.value);
-    matrix_.linearise(x);
-    whole_ = system_.gather(x);
-    linearised_ = true;
-  }
   void put_given(std::vector<FilmCoefficients>& films, double frequency) const {
     for (std::size_t b = 0; b < films.size(); ++b)
       for (const GivenCoefficients& g : options_.given) {
@@ -165,31 +150,12 @@ private:
   Way::Films last_films_ = Way::Films::whole;
 };
 
-// Largest difference over the frequencies, relative to the matrix of the whole machine there, and where it is.
-struct Difference {
-  double relative = 0, frequency = 0;
-};
-Difference difference(const Matrices& whole, const Roundings& rounding, const Matrices& other,
-                      const std::vector<double>& frequencies) {
-  Difference out;
-  for (std::size_t k = 0; k < whole.size(); ++k) {
-    double apart = 0, size = 0, nothing = 0;
-    for (std::size_t e = 0; e < whole[k].size(); ++e) {
-      apart += std::norm(other[k][e] - whole[k][e]);
-      size += std::norm(whole[k][e]);
-      nothing += rounding[k][e] * rounding[k][e];
-    }
-    const double relative = size > nothing ? std::sqrt(apart / size) : 0;
-    if (relative > out.relative) out = {relative, frequencies[k]};
-  }
-  return out;
-}
-
-// Where a response is largest.
+// Where a response is largest; the first frequency where it is nowhere known.
 std::size_t largest_of(const Matrices& found, std::size_t response) {
   std::size_t most = 0;
-  for (std::size_t k = 1; k < found.size(); ++k)
-    if (std::abs(found[k][response]) > std::abs(found[most][response])) most = k;
+  double largest = -1;
+  for (std::size_t k = 0; k < found.size(); ++k)
+    if (const double here = std::abs(found[k][response]); here > largest) most = k, largest = here;
   return most;
 }
 
@@ -207,10 +173,11 @@ struct TransferBars {
 
 // The machine with its films as they are at a few frequencies, and where each response is largest, on other meshes of
 // the films and of the shaft. One task is one mesh. Where a response grows without limit it has no largest value.
+// `lost`: why a frequency has no answer.
 TransferBars bars_of(const Context& context, const Layout& layout, Pieces& pieces,
                      const FrequencyResponseOptions& options, const std::vector<TransferOutput>& outputs,
-                     const std::vector<double>& frequencies, const Matrices& found,
-                     const std::vector<Endless>& endless) {
+                     const std::vector<double>& frequencies, const Matrices& found, const std::vector<Endless>& endless,
+                     const std::vector<std::string>& lost) {
   TransferBars out;
   std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   if (shaft_mesh_matters(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
@@ -221,6 +188,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   for (std::size_t e = 0; e < responses; ++e)
     if (std::ranges::none_of(endless, [&](const Endless& u) { return u.responses[e]; }))
       at.insert(largest_of(found, e));
+  std::erase_if(at, [&](std::size_t k) { return !lost[k].empty(); });
   out.at.assign(at.begin(), at.end());
   const auto compute = [&](std::size_t i) {
     std::vector<double> all;
@@ -263,6 +231,8 @@ StudyResult FrequencyResponse::run(Context& context) {
   if (outputs.empty())
     for (const TransferInput& input : options.inputs) outputs.push_back(output_of(input));
   const std::string unit = options.range.unit;
+  const auto in_unit = [&](double omega) { return deck::from_si(omega, unit, deck::frequency); };
+  const auto shown = [&](double omega) { return fmt::format("{:.6g} {}", in_unit(omega), unit); };
   std::vector<double> frequencies;
   for (int k = 0; k < options.points; ++k) {
     const double part = static_cast<double>(k) / (options.points - 1);
@@ -283,16 +253,21 @@ StudyResult FrequencyResponse::run(Context& context) {
   Pieces pieces(results, context.resume);
   std::size_t ready = 0;
   std::vector<Matrices> all;
-  Roundings rounding;  // of the machine
+  Roundings rounding;                          // of the machine
+  std::vector<std::vector<std::string>> lost;  // why a frequency has no answer; empty: it has
   for (const Way& way : ways) {
     const auto compute = [&](std::size_t i) {
-      std::vector<double> flat = pack(machine.at(way, frequencies[i]));
+      machine.linearise();  // without an equilibrium nothing has an answer
+      std::vector<double> flat = answer_or_reason([&] { return pack(machine.at(way, frequencies[i])); });
       results.progress(
           fmt::format("{}: {} frequencies on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
       return flat;
     };
     Matrices& found = all.emplace_back();
-    for (const auto& flat : distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
+    auto& reasons = lost.emplace_back();
+    for (auto& flat : distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
+      reasons.push_back(take_reason(flat));
+      if (flat.empty()) flat.assign(3 * outputs.size() * options.inputs.size(), io::no_value);
       Transfer there = unpack_transfer(flat);
       found.push_back(std::move(there.values));
       if (all.size() == 1) rounding.push_back(std::move(there.rounding));
@@ -319,7 +294,9 @@ StudyResult FrequencyResponse::run(Context& context) {
   };
   const auto [narrow, at_narrow, endless] =
       between(frequencies, eigenvalues_in(eigen), search_of(context.machine.rotor, 0), beside);
-  const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0], endless);
+  lost[0] = leave_out_poles(frequencies, std::move(lost[0]), endless, all[0]);
+  if (std::ranges::none_of(lost[0], &std::string::empty)) return results.finish(lost[0].front(), false);
+  const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0], endless, lost[0]);
 
   auto& group = results.group();
   group.set("speed", options.speed.value);
@@ -332,7 +309,13 @@ StudyResult FrequencyResponse::run(Context& context) {
     group.child("bars").put("frequency", at, "rad/s",
                             "at which errors are estimated: a few, and where each is largest");
   }
-  for (const Way& way : ways) response.child(way.name).set("frequency", way.frequency);
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    auto& table = response.child(ways[w].name);
+    table.set("frequency", ways[w].frequency);
+    const std::string head = w == 0 ? "no answer at" : fmt::format("no answer of '{}' at", ways[w].name);
+    for (std::string& line : lost_points(head, lost[w], [&](std::size_t k) { return shown(frequencies[k]); }))
+      summary.warnings.push_back(std::move(line));
+  }
   const std::size_t inputs = options.inputs.size();
   const auto answers = [&](std::size_t at, std::size_t e) { return std::abs(all[0][at][e]) > rounding[at][e]; };
   std::vector<ResponseName> names;
@@ -361,7 +344,7 @@ StudyResult FrequencyResponse::run(Context& context) {
           std::map<std::string, double> bar;
           if (!bars.at.empty()) bar["uncertainty"] = bars.of(e, most);
           summary.set(name + ".largest", column[2][most], of, bar);
-          summary.set(name + ".largest_at", deck::from_si(frequencies[most], unit), unit);
+          summary.set(name + ".largest_at", in_unit(frequencies[most]), unit);
         }
         if (!answers(most, e)) silent.push_back(name);
         if (bars.at.empty()) continue;
@@ -380,7 +363,7 @@ StudyResult FrequencyResponse::run(Context& context) {
   for (std::size_t w = 1; w < ways.size(); ++w) {
     const Difference apart = difference(all[0], rounding, all[w], frequencies);
     summary.set(ways[w].name + ".difference", apart.relative, "1");
-    summary.set(ways[w].name + ".difference_at", deck::from_si(apart.frequency, unit), unit);
+    summary.set(ways[w].name + ".difference_at", in_unit(apart.frequency), unit);
   }
   warn_of_endless(summary, endless, bars.undamped, names, unit);
   warn_of_passed_over(summary, narrow, at_narrow, frequencies, all[0], names, unit);
@@ -390,8 +373,9 @@ StudyResult FrequencyResponse::run(Context& context) {
                     "have no relative error",
                     fmt::join(silent, ", ")));
   warn_of_shaft_mesh(summary, context.machine.rotor, {{"these transfer functions", most_by_shaft, most_of_amplitude}});
-  summary.points = static_cast<long>(frequencies.size());
-  return results.finish("completed", true);
+  const auto without = frequencies.size() - static_cast<std::size_t>(std::ranges::count(lost[0], std::string()));
+  summary.points = static_cast<long>(frequencies.size() - without);
+  return results.finish(status_of(without, frequencies.size(), "frequencies", "answer"), true);
 }
 
 }  // namespace whirl::study

@@ -80,7 +80,7 @@ void describe(deck::Description<TransferOutput>& d) {
 
 void describe(deck::Description<CoefficientsAt>& d) {
   using P = CoefficientsAt;
-  d.add("frequency", &P::frequency, "rad/s", deck::non_negative, "at which they hold").required();
+  d.add("frequency", &P::frequency, std::string(deck::frequency), deck::non_negative, "at which they hold").required();
   d.add("k_xx", &P::k_xx, "N/m", deck::any, "stiffness, force along x by a motion along x").required();
   d.add("k_xy", &P::k_xy, "N/m", deck::any, "force along x by a motion along y");
   d.add("k_yx", &P::k_yx, "N/m", deck::any, "force along y by a motion along x");
@@ -119,14 +119,16 @@ void describe(deck::Description<FrequencyResponseOptions>& d) {
   using O = FrequencyResponseOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.add("speed", &O::speed, "rad/s", deck::non_negative, "shaft speed, which is constant").required();
-  d.add("range", &O::range, "rad/s", deck::positive, "range of the frequency; results carry its unit").required();
+  d.add("range", &O::range, std::string(deck::frequency), deck::positive,
+        "range of the frequency; results carry its unit")
+      .required();
   d.add("points", &O::points, deck::in(2, 1e7), "frequencies in the range, with both ends");
   d.add("spacing", &O::spacing, "how they are spaced");
   d.add("inputs", &O::inputs, "forces and moments, each of which acts by itself").required();
   d.add("outputs", &O::outputs, "motions that answer; displacements along the inputs if empty");
   d.add("coefficients", &O::coefficients,
         "also the response of a machine whose films are stiffness and damping at each frequency, which is the same");
-  d.add("constant_at", &O::constant_at, "rad/s", deck::positive,
+  d.add("constant_at", &O::constant_at, std::string(deck::frequency), deck::positive,
         "also the responses of machines whose films are stiffness and damping at these frequencies");
   d.named(
       "given", &O::given, &GivenCoefficients::bearing,

@@ -86,9 +86,9 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   if (!any_ || sampled.empty()) return;
   // The last one is that of the shaft. Its nodes that were there before are those of the modes here.
   const auto compute = [&](std::size_t i) {
-    std::vector<double> all{1};
     const bool of_shaft = i == meshes.size();
-    const auto look = [&] {
+    return answer_or_reason([&] {
+      std::vector<double> all;
       const system::Train given = system::train_of(context.machine);
       system::RotorSystem there(layout.space,
                                 of_shaft ? with_cut_shaft(given, 2) : with_film_mesh(given, meshes[i].factor),
@@ -101,14 +101,8 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
         const auto numbers = paired(s.modes, other);
         all.insert(all.end(), numbers.begin(), numbers.end());
       }
-    };
-    // Behind a one stand the numbers, behind a zero the letters of the reason why there are none.
-    std::string reason;
-    if (!has_answer(look, &reason)) {
-      all.assign(1, 0);
-      all.insert(all.end(), reason.begin(), reason.end());
-    }
-    return all;
+      return all;
+    });
   };
   // Each mesh starts anew and leaves nothing behind.
   const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
@@ -118,10 +112,8 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
     const bool of_shaft = i == meshes.size();
     const char* const mesh = of_shaft ? "the shaft with every segment cut in two" : "another mesh of the films";
     const char* const advice = of_shaft ? "cut the segments shorter" : "give the films more cells";
-    const bool answered = found.front() != 0;
-    found.erase(found.begin());
-    const std::string failed = answered ? "" : std::string(found.begin(), found.end());
-    if (!answered) found.clear();
+    const std::string failed = take_reason(found);
+    const bool answered = failed.empty();
     for (std::size_t s = 0, k = 0; s < sampled.size(); ++s)
       for (std::size_t m = 0; m < sampled[s].ids.size(); ++m, k += 3) {
         if (m >= sampled[s].listed || (answered && !std::isnan(found[k]))) continue;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "study/bars/unresolved.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
@@ -60,6 +61,22 @@ std::vector<std::string> open_ends(const std::vector<Response>& curve, const std
                               last ? "is still rising" : "is falling already", last ? "end" : "beginning",
                               deck::from_si(end, unit), unit, fmt::join(where, "; "), last ? "beyond" : "below"));
   }
+  return out;
+}
+
+std::vector<std::string> beyond_beams(const rotor::Options& rotor, double last, const std::string& unit) {
+  std::vector<std::string> out;
+  const double half_wave = half_wave_limit(rotor), cut_off = shear_cut_off(rotor);
+  if (half_wave < std::min(cut_off, last))
+    out.push_back(fmt::format(
+        "above {:.6g} {} the mesh of the shaft is too coarse for the response (half a wave fits into one element): cut "
+        "the segments shorter, or end the range there",
+        deck::from_si(half_wave, unit), unit));
+  if (cut_off < last)
+    out.push_back(fmt::format(
+        "above {:.6g} {} the response is not that of the shaft (its sections shear against one another, and beam "
+        "theory ends): end the range there",
+        deck::from_si(cut_off, unit), unit));
   return out;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Ranges of speed that begin or end on the flank of a peak.
+// Ranges of speed that begin or end on the flank of a peak, or where beams end.
 
 #include <string>
 #include <vector>
@@ -21,5 +21,9 @@ namespace whirl::study {
 /// known within a fifth. Nothing where these are not known.
 [[nodiscard]] std::vector<std::string> open_ends(const std::vector<Response>& curve, const std::vector<Place>& places,
                                                  const Spectra& spectra, const std::string& unit);
+
+/// What the beams of a shaft cannot do in a response up to `last` [rad/s], a line each: their mesh is too coarse, or
+/// beam theory ends.
+[[nodiscard]] std::vector<std::string> beyond_beams(const rotor::Options& rotor, double last, const std::string& unit);
 
 }  // namespace whirl::study

@@ -29,8 +29,8 @@ void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>
       if (!(ratio > most)) continue;
       most = ratio;
       words = fmt::format("{:.6g} {} ({} reaches {:.3g} {} at it, {:.3g} {} at the frequencies beside)",
-                          deck::from_si(resonances[k].speed, unit), unit, names[e].name, here, names[e].unit, beside,
-                          names[e].unit);
+                          deck::from_si(resonances[k].speed, unit, deck::frequency), unit, names[e].name, here,
+                          names[e].unit, beside, names[e].unit);
     }
     if (!words.empty()) all.push_back(words);
   }

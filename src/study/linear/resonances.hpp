@@ -35,6 +35,9 @@ struct ResonanceSearch {
 /// Damping ratio below which a resonance is as good as undamped: rounding of eigenvalues is no more than that.
 inline constexpr double no_damping = 1e-8;
 
+/// Of a frequency: what rounding leaves of an eigenvalue. At an undamped resonance no farther away there is no answer.
+inline constexpr double at_pole = 1e-9;
+
 /// Damping ratio from which on a resonance has no peak: abs(1 - r^2 + 2 i zeta r) has no minimum over r any more.
 inline constexpr double no_peak = 0.7071;
 

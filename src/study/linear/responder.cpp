@@ -10,6 +10,7 @@
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/growth.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/film/thickness.hpp"
 #include "whirl/rotor/divide.hpp"
 #include "whirl/rotor/freedom.hpp"
@@ -78,6 +79,9 @@ Response Responder::at(double speed) {
       for (PetscInt i = 0; i < a.size(); ++i) a[i] = amplitude[static_cast<std::size_t>(2 * i) + part];
     }
     state[part] = system_.gather(v.get());
+    // Not every solver tells of a singular matrix.
+    if (!std::ranges::all_of(state[part], [](double s) { return std::isfinite(s); }))
+      throw core::NotConverged(solve::singular_at_frequency);
     shaft[part] = system_.shaft(state[part].data(), 0, false);
   }
   Response r;

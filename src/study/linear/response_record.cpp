@@ -31,6 +31,12 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
   return r;
 }
 
+Response Response::without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings) {
+  constexpr NodeMotion none{{io::no_value, io::no_value}, {io::no_value, io::no_value}};
+  return {speed, io::no_value, std::vector(n_nodes, none), std::vector(n_bearings, none),
+          std::vector(n_bearings, io::no_value)};
+}
+
 ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::size_t at) {
   ResponseCurve of;
   for (const Response& r : curve) {
@@ -91,10 +97,11 @@ void put_films(io::Group& group, io::StudySummary& summary, const system::ShownP
   for (const Response& r : curve) {
     const auto films = film_column(r.films, places.names.size());
     all.insert(all.end(), films.begin(), films.end());
-    answers.push_back(touched(r, places).empty() ? 1 : 0);
+    answers.push_back(std::isfinite(r.largest) && touched(r, places).empty() ? 1 : 0);
   }
   group.child("response")
-      .put("answer", answers, "1 where the linear motion leaves every bearing its film; 0: it is no answer");
+      .put("answer", answers,
+           "1 where the linear motion leaves every bearing its film; 0: it is no answer, or there is none");
   group.child("bearings")
       .put("film_min", {curve.size(), places.names.size()}, all, "m",
            "smallest film thickness that the linear motion leaves, at mid-plane of films that do not tilt, not a "

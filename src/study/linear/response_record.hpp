@@ -29,6 +29,9 @@ struct Response {
   double largest = 0;  ///< displacement anywhere on the shaft [m]
   std::vector<NodeMotion> nodes, bearings;
   std::vector<double> films;  ///< smallest thickness that the linear motion leaves each bearing [m]
+
+  /// All but the speed not a number.
+  [[nodiscard]] static Response without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings);
 };
 using Places = std::vector<NodeMotion> Response::*;
 

@@ -56,6 +56,19 @@ std::string label(const TransferOutput& output) {
   return place(output) + (output.quantity == TransferOutput::Quantity::displacement ? "" : "." + word(output.quantity));
 }
 
+std::vector<double> pack(const Transfer& transfer) {
+  std::vector<double> flat = transfer.rounding;
+  for (const Complex& g : transfer.values) flat.insert(flat.end(), {g.real(), g.imag()});
+  return flat;
+}
+
+Transfer unpack_transfer(const std::vector<double>& flat) {
+  const std::size_t n = flat.size() / 3;
+  Transfer out{{}, {flat.begin(), flat.begin() + static_cast<std::ptrdiff_t>(n)}};
+  for (std::size_t e = n; e < flat.size(); e += 2) out.values.emplace_back(flat[e], flat[e + 1]);
+  return out;
+}
+
 std::string unit_of(const TransferOutput& output, const TransferInput& input) {
   std::string below = is_slope(input.direction) ? "N m" : "N";
   if (output.quantity == TransferOutput::Quantity::velocity) below += " s";
@@ -138,6 +151,9 @@ Transfer TransferMatrix::at(double omega) {
         for (PetscInt k = 0; k < a.size(); ++k) a[k] = amplitude[static_cast<std::size_t>(2 * k) + part];
       }
       state[part] = system_.gather(v.get());
+      // Not every solver tells of a singular matrix.
+      if (!std::ranges::all_of(state[part], [](double s) { return std::isfinite(s); }))
+        throw core::NotConverged(solve::singular_at_frequency);
       shaft[part] = system_.shaft(state[part].data(), 0, false);
     }
     const auto coordinate = [&](PetscInt q) {
@@ -168,6 +184,22 @@ Transfer TransferMatrix::at(double omega) {
       out.values[o * inputs + i] = z * rate;
       out.rounding[o * inputs + i] = motion_rounding * largest[is_slope(output.direction)] * std::abs(rate);
     }
+  }
+  return out;
+}
+
+Difference difference(const Matrices& whole, const Roundings& rounding, const Matrices& other,
+                      const std::vector<double>& frequencies) {
+  Difference out;
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    double apart = 0, size = 0, nothing = 0;
+    for (std::size_t e = 0; e < whole[k].size(); ++e) {
+      apart += std::norm(other[k][e] - whole[k][e]);
+      size += std::norm(whole[k][e]);
+      nothing += rounding[k][e] * rounding[k][e];
+    }
+    const double relative = size > nothing ? std::sqrt(apart / size) : 0;
+    if (relative > out.relative) out = {relative, frequencies[k]};
   }
   return out;
 }

@@ -27,6 +27,21 @@ struct Transfer {
   std::vector<double> rounding;
 };
 
+[[nodiscard]] std::vector<double> pack(const Transfer& transfer);
+[[nodiscard]] Transfer unpack_transfer(const std::vector<double>& flat);
+
+/// Per frequency: a matrix, and what rounding leaves of one.
+using Matrices = std::vector<std::vector<std::complex<double>>>;
+using Roundings = std::vector<std::vector<double>>;
+
+/// Largest difference over the frequencies, relative to the matrix of the whole machine there, and where it is.
+/// Frequencies without an answer do not count.
+struct Difference {
+  double relative = 0, frequency = 0;
+};
+[[nodiscard]] Difference difference(const Matrices& whole, const Roundings& rounding, const Matrices& other,
+                                    const std::vector<double>& frequencies);
+
 /// The transfer matrix of one machine from inputs to outputs about an equilibrium. All members are collective on the
 /// system's communicator.
 class TransferMatrix {
@@ -35,7 +50,8 @@ public:
                  const std::vector<TransferOutput>& outputs);
   /// Takes the derivatives at the equilibrium x and the system's speed.
   void linearise(Vec x);
-  /// G(i omega), the same on all ranks. Throws core::NotConverged at an undamped resonance.
+  /// G(i omega), the same on all ranks. Throws core::NotConverged (solve::singular_at_frequency) at an undamped
+  /// resonance.
   [[nodiscard]] Transfer at(double omega);
 
 private:

@@ -16,9 +16,9 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bars/unresolved.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
+#include "study/linear/lost_speeds.hpp"
 #include "study/linear/open_ends.hpp"
 #include "study/linear/peak_list.hpp"
 #include "study/linear/resonances.hpp"
@@ -27,7 +27,9 @@
 #include "study/linear/response_places.hpp"
 #include "study/linear/response_record.hpp"
 #include "study/linear/stable_speeds.hpp"
+#include "study/lost_points.hpp"
 #include "study/pieces.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
@@ -111,16 +113,25 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // Responses at several speeds, shared between the groups of ranks.
   std::size_t ready = 0, calls = 0;
   Pieces pieces(results, context.resume);
+  LostSpeeds lost;
   const auto solve_at = [&](Responder& which, const std::vector<double>& speeds, const std::string& piece) {
     const auto compute = [&](std::size_t i) {
-      auto packed = pack(which.at(speeds[i]));
+      which.stand_at(speeds[i]);  // without an equilibrium the study ends
+      auto packed = answer_or_reason([&] { return pack(which.at(speeds[i])); });
       results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
                                    deck::from_si(speeds[i], unit), unit, results.seconds()));
       return packed;
     };
     std::vector<Response> out;
-    for (const auto& flat : distribute(layout, speeds.size(), compute, pieces, piece, which.trail()))
-      out.push_back(unpack(flat, nodes.size(), names.size()));
+    std::size_t k = 0;
+    for (auto& flat : distribute(layout, speeds.size(), compute, pieces, piece, which.trail())) {
+      std::string reason = take_reason(flat);
+      if (reason.empty())
+        out.push_back(unpack(flat, nodes.size(), names.size()));
+      else
+        lost[speeds[k]] = std::move(reason);
+      ++k;
+    }
     return out;
   };
   const auto at_speeds = [&](const std::vector<double>& speeds) {
@@ -130,12 +141,15 @@ StudyResult UnbalanceResponse::run(Context& context) {
   for (int k = 0; k < options.points; ++k)
     grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
   std::vector<Response> curve = at_speeds(grid);
+  if (curve.empty()) return results.finish(lost.begin()->second, false);
 
   // Speeds added around the peaks of each place until the parabola of 1/f^2 settles the speed to 1e-5.
   const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
   std::sort(curve.begin(), curve.end(), by_speed);
   const auto add = [&](std::vector<double> speeds) {
-    speeds = worth_asking(std::move(speeds), speeds_of(curve));
+    std::vector<double> known = speeds_of(curve);
+    for (const auto& [speed, why] : lost) known.insert(std::ranges::upper_bound(known, speed), speed);
+    speeds = worth_asking(std::move(speeds), known);
     for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
     std::sort(curve.begin(), curve.end(), by_speed);
     return !speeds.empty();
@@ -225,18 +239,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
     summary.warnings.emplace_back(
         "not all resonances between the speeds computed could be looked for: more 'points' or a narrower 'range' show "
         "what is missing");
-  const double half_wave = half_wave_limit(context.machine.rotor), cut_off = shear_cut_off(context.machine.rotor);
-  if (half_wave < std::min(cut_off, curve.back().speed))
-    summary.warnings.push_back(fmt::format(
-        "above {:.6g} {} the mesh of the shaft is too coarse for the response (half a wave fits into one element): cut "
-        "the segments shorter, or end the range there",
-        deck::from_si(half_wave, unit), unit));
-  if (cut_off < curve.back().speed)
-    summary.warnings.push_back(fmt::format(
-        "above {:.6g} {} the response is not that of the shaft (its sections shear against one another, and beam "
-        "theory ends): end the range there",
-        deck::from_si(cut_off, unit), unit));
-
+  for (std::string& line : beyond_beams(context.machine.rotor, curve.back().speed, unit))
+    summary.warnings.push_back(std::move(line));
   for (std::string& line : open_ends(curve, places, spectra, unit)) summary.warnings.push_back(std::move(line));
 
   StableSpeeds stable;
@@ -313,7 +317,10 @@ StudyResult UnbalanceResponse::run(Context& context) {
   std::string reason;
   double operating_rounding = 0;  // [m]
   const auto take_operating = [&] {
-    const Response there = at_speeds({operating_speed->value}).front();
+    const std::vector<Response> found = at_speeds({operating_speed->value});
+    if (found.empty() || stands_on_pole(found.front(), spectra, search, at_speeds))
+      throw core::NotConverged(solve::singular_at_frequency);
+    const Response& there = found.front();
     put_operating(names, nodes, there, summary);
     summary.set("operating_speed.answer", touched(there, shown).empty() ? 1 : 0, "1");
     operating_rounding = motion_rounding * there.largest;
@@ -331,6 +338,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       if (mesh.spacing != 1) other.emplace(context, layout, options, nodes, mesh);
                       if (operating_known) at.push_back(operating_speed->value);
                       std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
+                      if (all.size() < at.size()) throw core::NotConverged(solve::singular_at_frequency);
                       MeshResponse out;
                       if (operating_known) {
                         put_operating(names, nodes, all.back(), out.operating);
@@ -349,6 +357,14 @@ StudyResult UnbalanceResponse::run(Context& context) {
     judge(summary, p);
     summary.peaks.push_back(p.entry);
   }
+
+  for (const Response& r : curve)
+    if (stands_on_pole(r, spectra, search, at_speeds)) lost[r.speed] = solve::singular_at_frequency;
+  const auto beside_grid = [&](double speed) { return std::ranges::find(grid, speed) == grid.end(); };
+  std::erase_if(curve, [&](const Response& r) { return lost.contains(r.speed) && beside_grid(r.speed); });
+  std::erase_if(lost, [&](const auto& l) { return beside_grid(l.first); });
+  put_lost(curve, lost, summary, unit);
+  summary.points = static_cast<long>(curve.size() - lost.size());
 
   auto& group = results.group();
   put_films(group, summary, shown, curve, unit);
@@ -371,8 +387,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   group.child("bearings").label_each({names_of_bearings(context.machine)});
   group.set("speed_unit", unit);
   group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
-  summary.points = static_cast<long>(curve.size());
-  return results.finish("completed", true);
+  return results.finish(status_of(lost.size(), grid.size(), "speeds", "response"), true);
 }
 
 }  // namespace whirl::study

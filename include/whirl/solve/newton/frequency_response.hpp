@@ -11,6 +11,10 @@ namespace whirl::solve {
 class EliminatedResponse;
 class ShiftedSystem;
 
+/// What a core::NotConverged says where the matrix is singular.
+inline constexpr const char* singular_at_frequency =
+    "the equations are singular there, as at an undamped resonance: the motion grows without limit";
+
 /// Solves (dF/dx + i omega dF/d(dx/dt)) z = b for the complex amplitude z of x = Re(z exp(i omega t)).
 ///
 /// On one rank the kinematic equations q' = v are eliminated exactly and the rest is factorised as a complex sparse

@@ -1,4 +1,4 @@
-#include "study/bearing/lost_points.hpp"
+#include "study/lost_points.hpp"
 
 #include <fmt/core.h>
 
