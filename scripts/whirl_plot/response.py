@@ -57,8 +57,12 @@ class Validity:
 
 def draw_lag(axis, x, phase, colour, validity):
     """Lag in degrees within one turn: the unwrapped curve and its copies a turn away, as far as they are inside."""
-    lag = -np.degrees(np.unwrap(phase))
-    for turn in range(int(np.floor(lag.min() / 360)), int(np.floor(lag.max() / 360)) + 1):
+    known = np.isfinite(phase)  # a speed without a response has none
+    if not known.any():
+        return
+    lag = np.full(len(phase), np.nan)
+    lag[known] = -np.degrees(np.unwrap(phase[known]))
+    for turn in range(int(np.floor(np.nanmin(lag) / 360)), int(np.floor(np.nanmax(lag) / 360)) + 1):
         validity.plot(axis, x, lag - 360 * turn, color=colour, linewidth=1.2)
     axis.set_ylim(360, 0)
     axis.set_yticks(range(0, 361, 90))

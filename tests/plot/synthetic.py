@@ -112,10 +112,11 @@ def response(root):
         y = np.stack([-1j * s * 1e-6 * receptance([281, 540], 0.04, [2.0, -0.4]) for s in scales], axis=1)
         major = np.sqrt(0.5 * (abs(x)**2 + abs(y)**2 + abs(x**2 + y**2)))
         minor = np.sqrt(np.maximum(0, abs(x)**2 + abs(y)**2 - major**2))
+        x[60] = y[60] = major[60] = minor[60] = np.nan  # a speed without a response
         return {"x_amplitude": abs(x), "x_phase": np.angle(x), "y_amplitude": abs(y), "y_phase": np.angle(y),
                 "semi_major": major, "semi_minor": minor}
 
-    put(g.create_group("response"), speed=w, node=[120, 140], **block([3, 2.5]), unstable_count=2 * (w > 5000 * RPM), answer=1 - ((w > 2800 * RPM) & (w < 3000 * RPM)))
+    put(g.create_group("response"), speed=w, node=[120, 140], **block([3, 2.5]), unstable_count=2 * (w > 5000 * RPM), answer=1 - (((w > 2800 * RPM) & (w < 3000 * RPM)) | (w == w[60])))
     put(g.create_group("bearings"), name=NAMES, **block([0.3, 0.6, 1.2, 1.0, 0.7]))
 
 

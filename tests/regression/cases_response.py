@@ -173,7 +173,7 @@ def undamped(h, mpirun):
         with h5py.File(h.work / f"undamped {ranks}" / "results.h5") as f:
             rows = {name: f[f"studies/{name}/response/frequency"][()] for name in ("hit", "last")}
             reals = {name: f[f"studies/{name}/response/machine/node.1.x.from.node.1.x/real"][()] for name in rows}
-            speeds, answers, major = (f[f"studies/u_last/response/{c}"][()] for c in ("speed", "answer", "semi_major"))
+            speeds, answers, major, growing = (f[f"studies/u_last/response/{c}"][()] for c in ("speed", "answer", "semi_major", "unstable_count"))
         for name, lost, where in (("hit", 10, "100 Hz"), ("last", 20, "6000 rpm")):
             s = out[name]
             h.true(f"{name}: one row without an answer, {ranks} ranks", s["status"] == "1 of 21 frequencies have no answer" and list(np.flatnonzero(np.isnan(reals[name]))) == [lost], s["status"])
@@ -188,6 +188,7 @@ def undamped(h, mpirun):
             h.true("    said where and why", warned(s, "no response at 6000 rpm: the equations are singular there"), str(s.get("warnings")))
             h.true("    at the operating speed too", warned(s, "no response at the operating_speed of 6000 rpm") == bool(op), str(s.get("warnings")))
         h.true("its row has no numbers", answers[-1] == 0 and np.isnan(major[-1]).all() and np.isfinite(major[:-1]).all() and answers[:-1].all(), str(major[-3:]))
+        h.true("its equilibrium is known", not growing.any() and len(speeds) == 21, str(growing))
         w = 2 * np.pi / 60 * 5400
         h.close("beside it U w^2/(k - m w^2) [m]", major[0, 0], 3e-4 * w**2 / (k - m * w**2), 1e-12)
 

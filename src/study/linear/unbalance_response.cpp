@@ -246,6 +246,10 @@ StudyResult UnbalanceResponse::run(Context& context) {
   StableSpeeds stable;
   if (lossless) {
     std::vector<double> all = speeds_of(curve);
+    for (const auto& [speed, why] : lost) {
+      all.push_back(speed);
+      counted.push_back(speed);
+    }
     if (operating_speed) all.push_back(operating_speed->value);
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
