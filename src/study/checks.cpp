@@ -13,12 +13,22 @@ bool Study::goes_on_from(const Study& earlier) const {
   return !from.empty() && (from == earlier.name() || earlier.may_add(io::plain_name(from)));
 }
 
+namespace {
+
+// Whether item i stands before it in the list already.
+template <class T>
+bool repeats(const std::vector<T>& list, std::size_t i) {
+  const auto item = list.begin() + static_cast<std::ptrdiff_t>(i);
+  return std::find(list.begin(), item, *item) != item;
+}
+
+}  // namespace
+
 void check_unbalance(const std::vector<std::string>& names, const system::Machine& machine,
                      const deck::Report& report) {
   if (names.empty()) report.fail("unbalance", "'unbalance' is empty");
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
-        names.begin() + static_cast<std::ptrdiff_t>(i))
+    if (repeats(names, i))
       report.fail(fmt::format("unbalance.{}", i + 1),
                   fmt::format("'{}' stands in this list already: it would count twice", names[i]));
     else if (names[i] == system::unbalance_of_discs && !system::find_unbalance(machine, names[i])) {
@@ -34,7 +44,9 @@ void check_nodes(const std::string& key, const std::vector<int>& nodes, const sy
                  const deck::Report& report) {
   const int n_nodes = static_cast<int>(machine.rotor.segments.size()) + 1;
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (nodes[i] > n_nodes)
+    if (repeats(nodes, i))
+      report.fail(fmt::format("{}.{}", key, i + 1), fmt::format("node {} is named twice", nodes[i]));
+    else if (nodes[i] > n_nodes)
       report.fail(fmt::format("{}.{}", key, i + 1),
                   fmt::format("node {} does not exist: the shaft has nodes 1 to {}", nodes[i], n_nodes));
 }

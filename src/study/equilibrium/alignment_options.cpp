@@ -35,10 +35,6 @@ void Alignment::validate(const system::Machine& machine, const deck::Report& rep
   for (const system::Element& e : machine.elements)
     if (system::holds_shaft(e)) stands("element " + e.name, e.node);
   check_nodes("zero_moment", options.zero_moment, machine, report);
-  for (std::size_t i = 0; i < options.zero_moment.size(); ++i)
-    if (const auto here = options.zero_moment.begin() + static_cast<std::ptrdiff_t>(i);
-        std::find(options.zero_moment.begin(), here, *here) != here)
-      report.fail(fmt::format("zero_moment.{}", i + 1), fmt::format("node {} is named twice", *here));
   const std::vector<std::string> bearings = system::bearing_names(machine);
   auto exists = [&](const std::string& name, const std::string& path) {
     if (!system::find_bearing(machine, name))
