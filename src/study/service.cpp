@@ -182,9 +182,10 @@ private:
   void take_modes(const StudySummary& s) {
     const std::vector<ModesAt> all = modes_by_speed(s);
     std::string verdict = take_ranges(s);
+    bool computed = false;
     for (std::size_t k = 0; k < all.size(); ++k) {
       const ModesAt &b = all[k], &a = k > 0 ? all[k - 1] : b;
-      const bool here = is_service(b.speed);
+      const bool here = computed = is_service(b.speed);
       if (!here && !(a.speed < speed_ && speed_ < b.speed)) continue;
       const double w = here ? 1 : (speed_ - a.speed) / (b.speed - a.speed);
       const double decrement = here ? b.decrement : (1 - w) * a.decrement + w * b.decrement;
@@ -208,7 +209,10 @@ private:
       }
       break;
     }
-    vote(verdict, s.name);
+    if (computed || !s.ranges.empty())
+      vote(verdict, s.name);
+    else if (!verdict.empty())
+      beside_ = {verdict, s.name + " at the speeds beside it"};
     for (const CriticalSpeed& c : critical_speeds_of(s)) {
       const Quantity& delta = c.log_decrement;
       if (!std::isfinite(c.speed.value) || delta.value - delta.bar() > damped) continue;
@@ -381,6 +385,7 @@ private:
 
   void put_stability() {
     ServiceFact fact{"stability", {}, {}, "not known: `modes` or `equilibrium_branch` over the speed give it", {}};
+    if (verdicts_.empty()) vote(beside_.first, beside_.second);
     if (!verdicts_.empty()) {
       const auto said = [&](const std::string& word) {
         return std::find(verdicts_.begin(), verdicts_.end(), word) != verdicts_.end();
@@ -400,6 +405,7 @@ private:
   const io::Group& results_;
   io::Service service_;
   std::vector<std::string> verdicts_, voters_;
+  std::pair<std::string, std::string> beside_;  // verdict and voter of listed speeds on either side: for want of others
   std::optional<ServiceFact> threshold_, decrement_, below_, above_, peak_below_, peak_above_, film_, pressure_,
       temperature_, vibration_, beyond_films_;
 };

@@ -200,10 +200,19 @@ def limits(h):
     # A window between the speeds that are counted in any case, about the service speed.
     rows = ", ".join("{speed: %g rad/s, k_xy: %g N/m, k_yx: %g N/m}" % (v, k, -k) for v, k in ((0, 0), (520, 0), (522, 1e5), (532, 1e5), (534, 0), (2000, 0)))
     window = ["service_speed=528 rad/s", f"elements.seal.table=[{rows}]",
-              "studies=[{unbalance_response: {name: r, unbalance: [u], range: {from: 100 rad/s, to: 1300 rad/s}, points: 601}}, {static: {name: s, speed: 5042 rpm}}]"]
+              "studies=[{unbalance_response: {name: r, unbalance: [u], range: {from: 100 rad/s, to: 1300 rad/s}, points: 601}}, {static: {name: s, speed: 5042 rpm}}, "
+              "{modes: {name: m, range: {from: 100 rad/s, to: 1300 rad/s}, points: 3}}, "
+              "{equilibrium_branch: {name: b, parameter: speed, range: {from: 1300 rad/s, to: 100 rad/s}}}]"]
     s = h.run(deck, "window", window, launcher=[])
     h.close("eigenvalues that grow in the window", value(s["r"], "operating_speed.unstable_count"), 2, 0)
     h.true("    the verdict names it", s["r"]["stability"].startswith("unstable from 52"), s["r"]["stability"])
+    # Three speeds of modes and the steps of a branch pass over it: C omega_n = K_xy at sqrt(1e5) rad/s, so that half of the rise is the border.
+    for name in ("m", "b"):
+        ranges = sorted(([r["from"], r["to"]], r["stability"]) if r["from"] < r["to"] else ([r["to"], r["from"]], r["stability"]) for r in s[name]["ranges"])
+        h.true(f"    it lies between stable ranges: {name}", [word for _, word in ranges] == ["stable", "unstable", "stable"], str(ranges))
+        for edge, row in zip(ranges[1][0], (520, 532), strict=True):
+            h.true(f"    its border lies between rows: {name}", row < edge < row + 2, str(edge))
+    h.true("    modes say what they looked at", "speeds computed" in s["m"]["stability"], s["m"]["stability"])
     h.true("    static in its own unit", warned(s["s"], "at 5042 rpm the equilibrium is unstable"), str(s["s"].get("warnings")))
 
 

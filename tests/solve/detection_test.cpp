@@ -86,6 +86,41 @@ TEST(Detection, AValueThatComesAndGoes) {
   EXPECT_TRUE(r.suspected.empty());
 }
 
+// z' = (r(p) + i) z about x = 0, r > 0 in a window of a step only, which no point sees: a look inside finds it.
+TEST(Detection, ALookBetweenTwoPoints) {
+  const auto real = [](double p) {
+    return p < 0.1 ? -1.0 : p < 0.12 ? 100 * (p - 0.11) : p < 0.14 ? 100 * (0.13 - p) : -1.0;
+  };
+  test::SmallSystem s(PETSC_COMM_SELF, 1, -1, speed, [](double, const auto& x, const auto& xdot, auto p) {
+    auto f = xdot;
+    f(0) += x(0) - p;
+    return f;
+  });
+  for (const double end : {1.0, -1.0}) {
+    solve::EquilibriumProblem problem(s, 1, 1);
+    test::Recorded seen;
+    auto callbacks = test::recording(problem, seen);
+    callbacks.stability = [&](Vec u) {
+      const double r = real(solve::last_entry(PETSC_COMM_SELF, u));
+      return solve::make_stability({{r, 1}, {r, -1}}, [](test::Complex z) { return z.real(); });
+    };
+    auto options = test::range(-end, end, 0.3);
+    options.location_tolerance = 1e-6;
+    for (const bool looks : {false, true}) {
+      seen = {};
+      if (looks) options.looks = {0.1, 0.12, 0.14};
+      core::Vector u = problem.make_unknown();
+      (void)solve::follow_branch(problem, std::move(u), options, callbacks);
+      const auto found = places(seen, Event::hopf);
+      ASSERT_EQ(found.size(), looks ? 2U : 0U) << end;
+      for (const auto& p : seen.points) EXPECT_EQ(p.stability.unstable(), 0) << p.parameter;
+      if (!looks) continue;
+      EXPECT_NEAR(found[0], 0.11, 1e-6);
+      EXPECT_NEAR(found[1], 0.13, 1e-6);
+    }
+  }
+}
+
 // A value that jumps across the border, as those of films on a mesh do, never comes near it: the ends enclose the
 // place.
 TEST(Detection, AValueThatJumps) {

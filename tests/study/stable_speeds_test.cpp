@@ -1,6 +1,7 @@
 // Stability over speeds from a few counts.
 #include "study/linear/stable_speeds.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +36,8 @@ TEST(StableSpeeds, TheBorderIsFoundBetweenNeighboursByFewCounts) {
   EXPECT_EQ(stretches[1].to, 1099);
   io::StudySummary summary;
   put_verdict(summary, stable, "rad/s");
-  EXPECT_EQ(summary.stability, "unstable from 637 to 1099 rad/s (stable at 636)");
+  EXPECT_EQ(summary.stability,
+            fmt::format("unstable from 637 to 1099 rad/s (stable at 636), by the {} speeds counted", asked));
   ASSERT_EQ(summary.warnings.size(), 1U);
   EXPECT_NE(summary.warnings[0].find("unstable from 637 to 1099 rad/s (stable at 636)"), std::string::npos);
 }
@@ -49,11 +51,11 @@ TEST(StableSpeeds, WhatIsNotKnownIsUndetermined) {
   put_verdict(stable, all(0), "rad/s");
   put_verdict(unknown, all(StableSpeeds::unknown), "rad/s");
   put_verdict(unstable, all(2), "rad/s");
-  EXPECT_EQ(stable.stability, "stable throughout");
+  EXPECT_EQ(stable.stability, "stable at the 5 speeds counted");
   EXPECT_TRUE(stable.warnings.empty());
-  EXPECT_EQ(unknown.stability, "undetermined throughout");
+  EXPECT_EQ(unknown.stability, "undetermined at the 5 speeds counted");
   EXPECT_EQ(unknown.warnings.size(), 1U);
-  EXPECT_EQ(unstable.stability, "unstable throughout");
+  EXPECT_EQ(unstable.stability, "unstable at the 5 speeds counted");
   EXPECT_EQ(unstable.warnings.size(), 1U);
 }
 

@@ -103,7 +103,11 @@ bool Follower::search(const State& a, const State& b, const Test& test, double t
     s = rounded(std::clamp(s, std::min(s0, s1), std::max(s0, s1)));
     State trial;
     NewtonResult result;
-    if (!advance(a, s, trial, result)) return false;
+    // Where a bend is too sharp for a step, as beside a row of a table, the parameter still leads there.
+    if (!advance(a, s, trial, result)) {
+      if (!between(a, b, a.point.parameter + s / b.point.step * dp, trial)) return false;
+      s = trial.point.step;
+    }
     const double f = test(trial);
     at = std::move(trial);
     found.parameter = at.point.parameter;
@@ -388,7 +392,7 @@ void Follower::events(const BranchPoint* first, const State* before, const State
   folds(a, b, 0);
   if (memory_.folds.empty()) release_held();
   memory_.held.reset();
-  crossings(a, b, 0);
+  crossings_by_looks(a, b);
   if (questions_.zeros) zeros(a, b);
   bool seen = std::exchange(memory_.visited, false);  // between `before` and a
   if (first && before && !seen) seen = kinks(*first, *before, a, b);

@@ -60,6 +60,8 @@ private:
   [[nodiscard]] bool natural_from(const State& from) const {
     return kind_ == Continuation::natural && from.point.slope != 0;
   }
+  // The point at a parameter between two points, seen from the first; none where the branch turns.
+  bool between(const State& a, const State& b, double parameter, State& to);
   // How far b lies from a in the measure of advance().
   [[nodiscard]] double distance(const State& a, Vec b) const;
   // The branch ends where the limit of the callbacks is met between two points; false if that place cannot be found.
@@ -84,6 +86,8 @@ private:
   [[nodiscard]] bool turns_beside(const State& a, const State& at) const;
   void release_held();
   void crossings(const State& a, const State& b, int depth);
+  // From look to look of the options: what comes and goes between two points shows there.
+  void crossings_by_looks(const State& a, const State& b);
   void zeros(const State& a, const State& b);
   void visits(const State& before, const State& a, const State& b, bool seen);
   [[nodiscard]] bool kinks(const BranchPoint& first, const State& a, const State& b, const State& last);

@@ -1,9 +1,11 @@
 // A look at a solution: tangent, stability, monitors. What a journal keeps of looks and locations.
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "solve/branch/follower.hpp"
+#include "whirl/core/error.hpp"
 
 namespace whirl::solve {
 
@@ -116,6 +118,43 @@ void Follower::look_at(State& s, Vec along) {
   s.point.stability = questions_.stability ? questions_.stability(s.u.get()) : Stability{};
   if (questions_.monitors) s.point.monitors = questions_.monitors(s.u.get(), s.tangent.get());
   memory_.warm = problem_.warm_start();
+}
+
+bool Follower::between(const State& a, const State& b, double parameter, State& to) {
+  const double rise = b.point.parameter - a.point.parameter;
+  if (!(a.point.slope * rise > 0 && b.point.slope * rise > 0)) return false;
+  const double part = (parameter - a.point.parameter) / rise;
+  to = {copy(b.u.get()), {}, a.point};
+  check(VecAXPBY(to.u.get(), 1 - part, part, a.u.get()));
+  const NewtonResult result = correct_at(to.u, parameter);
+  if (!result.converged) return false;
+  to.point.newton_iterations = result.iterations;
+  to.point.step = distance(a, to.u.get());
+  if (!(to.point.step * b.point.step > 0)) return false;
+  try {
+    inspect(to, a.tangent.get());
+  } catch (const core::NotConverged&) {  // a singular matrix
+    return false;
+  }
+  return true;
+}
+
+void Follower::crossings_by_looks(const State& a, const State& b) {
+  const double rise = b.point.parameter - a.point.parameter;
+  std::vector<double> looks;
+  for (const double at : options_.looks)
+    if (const double part = rounded((at - a.point.parameter) / rise); part > 0 && part < 1) looks.push_back(at);
+  std::ranges::sort(looks, [rise](double x, double y) { return rise > 0 ? x < y : x > y; });
+  if (looks.empty()) return crossings(a, b, 0);
+  State last = copy(a), here;
+  for (const double at : looks) {
+    if (!between(last, b, at, here)) continue;
+    crossings(last, here, 0);
+    last = std::move(here);
+  }
+  State end = copy(b);
+  end.point.step = distance(last, b.u.get());
+  crossings(last, end, 0);
 }
 
 }  // namespace whirl::solve

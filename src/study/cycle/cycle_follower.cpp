@@ -14,6 +14,7 @@
 #include "study/bifurcation.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/make_plant.hpp"
+#include "study/tabled_speeds.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
@@ -61,6 +62,11 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
   continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
   newton_.tolerance = options_.tolerance;
   continuation_.newton = newton_;
+  if (system_->parameter_is_speed())
+    for (const double row :
+         tabled_speeds(context.machine, range.from, range.to, 0,
+                       static_cast<long>(system_->size()) * options_.intervals, context.results.summary(), unit_))
+      continuation_.looks.push_back(row / scale_);
   if (const Layout shared = layout(); shared.shared)
     stored_ =
         core::make_vector(context_.comm, core::rank_of(shared.time) == 0 ? system_->local_size() : 0, PETSC_DETERMINE);

@@ -24,6 +24,7 @@
 #include "study/locus/curve_points.hpp"
 #include "study/make_plant.hpp"
 #include "study/pieces.hpp"
+#include "study/tabled_speeds.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -160,6 +161,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     }
   }
   problem.from_state(x.get(), range.from, u.get());
+  if (system->parameter_is_speed())
+    for (const double row :
+         tabled_speeds(context.machine, range.from, range.to, 0, system->size(), context.results.summary(), unit))
+      continuation.looks.push_back(row / scale);
 
   const system::ShownPlaces places = system->places();
   io::Table table(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
@@ -125,6 +126,14 @@ void ModeValues::put_stability(io::StudySummary& summary, const std::vector<Stat
   }
   for (const BranchChange& c : changes) verdict.add(c);
   summary.ranges = verdict.ranges(unit_);
+  // Between the speeds nobody looked.
+  const std::string computed = fmt::format("the {} speeds computed", stations.size());
+  constexpr std::string_view whole = " throughout";
+  summary.stability = verdict.text();
+  if (summary.stability.ends_with(whole))
+    summary.stability.replace(summary.stability.size() - whole.size(), whole.size(), " at " + computed);
+  else if (!summary.stability.empty())
+    summary.stability += ", by " + computed;
   if (const int at = threshold_among(verdict.limits()); at >= 0) {
     const BranchChange& c = changes[static_cast<std::size_t>(at)];
     const auto& crossing = events[static_cast<std::size_t>(c.bifurcation)].crossing;

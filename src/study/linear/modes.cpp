@@ -25,6 +25,7 @@
 #include "study/linear/shaft_alone.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
+#include "study/tabled_speeds.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -67,11 +68,7 @@ void put_searches(io::Group& group, io::StudySummary& summary, const std::vector
 std::vector<double> with_service_speed(const ModesOptions& options, const std::optional<deck::Quantity>& service) {
   std::vector<double> speeds = options.all_speeds();
   if (!options.range || !service || !std::ranges::is_sorted(speeds)) return speeds;
-  const double at = service->value;
-  const auto place = std::ranges::upper_bound(speeds, at);
-  constexpr double same = 1e-9;
-  if (place != speeds.begin() && place != speeds.end() && at - place[-1] > same * at && *place - at > same * at)
-    speeds.insert(place, at);
+  put_between(speeds, service->value);
   return speeds;
 }
 
@@ -130,6 +127,10 @@ StudyResult Modes::run(Context& context) {
   all.insert(all.end(), shape_speeds.begin(), shape_speeds.end());
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
+  if (options.range)
+    for (const double row :
+         tabled_speeds(context.machine, all.front(), all.back(), speeds.size(), system.size(), summary, unit))
+      put_between(all, row);
   std::vector<Station> stations = modes_at(all);
   // Modes are followed over a range; single speeds far apart have only their own.
   if (options.range) {

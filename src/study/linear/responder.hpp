@@ -34,6 +34,7 @@ public:
   [[nodiscard]] SpectrumAt spectrum(double speed);
   [[nodiscard]] system::ShownPlaces places() const { return system_.places(); }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
+  [[nodiscard]] PetscInt states() const { return system_.size(); }
   /// Whether a spectrum has all eigenvalues of the machine, not only those nearest to zero.
   [[nodiscard]] bool whole_spectra() const;
 

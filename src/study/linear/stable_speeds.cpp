@@ -73,10 +73,7 @@ std::vector<StableSpeeds::Stretch> StableSpeeds::stretches() const {
 void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit) {
   const auto stretches = stable.stretches();
   if (stretches.empty()) return;
-  if (stretches.size() == 1)
-    summary.stability = stretches.front().stability +
-                        (stable.all_counted() ? std::string(" throughout")
-                                              : fmt::format(" at the {} speeds counted", stable.counted()));
+  const std::string counted = fmt::format("the {} speeds counted", stable.counted());
   std::string verdict;
   std::vector<std::string> warned;
   for (std::size_t k = 0; k < stretches.size(); ++k) {
@@ -97,7 +94,8 @@ void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const st
             : fmt::format("whether the equilibrium is stable {} is not known: eigenvalues may be missing", where));
   }
   for (auto line = warned.rbegin(); line != warned.rend(); ++line) warn_first(summary, std::move(*line));
-  if (stretches.size() > 1) summary.stability = verdict;
+  summary.stability =
+      stretches.size() == 1 ? stretches.front().stability + " at " + counted : verdict + ", by " + counted;
 }
 
 }  // namespace whirl::study

@@ -27,9 +27,8 @@ public:
   StableSpeeds(std::vector<double> speeds, const std::vector<double>& first, const Count& count);
 
   [[nodiscard]] bool known() const { return !speeds_.empty(); }
-  /// How many speeds were counted, and whether these are all.
+  /// At how many speeds.
   [[nodiscard]] std::size_t counted() const { return counted_; }
-  [[nodiscard]] bool all_counted() const { return counted_ == speeds_.size(); }
   /// At one of the speeds.
   [[nodiscard]] int at(double speed) const;
   /// "stable", "unstable", "undetermined" of a number.
@@ -48,9 +47,9 @@ private:
   std::size_t counted_ = 0;
 };
 
-/// Puts the verdict over the speeds, shown in `unit`: "stable throughout" if all were counted and are, "stable at the N
-/// speeds counted" if these are. And a warning that names where the equilibrium is unstable or not
-/// known: there no vibration settles into the linear response, and margins mean nothing.
+/// Puts the verdict over the speeds, shown in `unit`: "stable at the N speeds counted" if these are. And a warning that
+/// names where the equilibrium is unstable or not known: there no vibration settles into the linear response, and
+/// margins mean nothing.
 void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit);
 
 }  // namespace whirl::study

@@ -29,6 +29,7 @@
 #include "study/linear/stable_speeds.hpp"
 #include "study/lost_points.hpp"
 #include "study/pieces.hpp"
+#include "study/tabled_speeds.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 
@@ -202,6 +203,9 @@ StudyResult UnbalanceResponse::run(Context& context) {
   std::vector<double> counted{curve.front().speed, curve.back().speed}, tops;
   if (lossless) counted = few_speeds(speeds_of(curve));
   if (operating_speed) counted.push_back(operating_speed->value);
+  const std::vector<double> rows = tabled_speeds(context.machine, curve.front().speed, curve.back().speed, curve.size(),
+                                                 machine.states(), summary, unit);
+  counted.insert(counted.end(), rows.begin(), rows.end());
   add_tops(tops, curve, places, true);
   add_tops(counted, curve, places, false);
   std::vector<double> at_first = counted;
@@ -250,6 +254,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
       all.push_back(speed);
       counted.push_back(speed);
     }
+    all.insert(all.end(), rows.begin(), rows.end());
     if (operating_speed) all.push_back(operating_speed->value);
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());

@@ -27,6 +27,8 @@ struct ContinuationOptions {
   double from = 0, to = 1;
   double initial_step = 0.1, min_step = 1e-4, max_step = 0.5;
   int max_points = 1000;
+  /// Where a step that passes them looks for events as well, as at a point; rising or falling.
+  std::vector<double> looks = {};
   /// Where a branch that turned back ends; beyond `from` by a step if absent.
   std::optional<double> back;
   int adapt_every = 5;  ///< accepted points between adaptations of the discretisation; 0 never
