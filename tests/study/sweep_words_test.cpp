@@ -66,6 +66,9 @@ TEST(SweepVerdict, IsThatOfTheStudies) {
   const std::vector<io::StudySummary> both{branch, response};
   EXPECT_EQ(study::verdict_of(both).words, "balanced: stable 600 to 5000, unstable to 7500 rpm; r: stable throughout");
   EXPECT_EQ(study::verdict_of(both).found, Found::in_part);
+  modes = branch;
+  modes.stability = "loses stability, by the 9 speeds computed";
+  EXPECT_EQ(study::verdict_of(modes).words, "stable 600 to 5000, unstable to 7500 rpm, by the 9 speeds computed");
   response.stability.clear();
   response.status = "did not converge";
   EXPECT_EQ(study::verdict_of(response).words, "no result: did not converge");

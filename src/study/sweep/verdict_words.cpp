@@ -96,7 +96,9 @@ const char* name_of(Found found) {
 VariantVerdict verdict_of(const io::StudySummary& study) {
   // What ended early is not stable throughout, and its verdict knows that.
   const bool by_ranges = study.ranges.size() > 1 || (study.stability.empty() && !study.ranges.empty());
-  const std::string words = by_ranges ? of_ranges(study.ranges) : study.stability;
+  const std::size_t by = study.stability.find(", by the ");  // ... speeds computed
+  const std::string looked = by == std::string::npos ? "" : study.stability.substr(by);
+  const std::string words = by_ranges ? of_ranges(study.ranges) + looked : study.stability;
   if (!words.empty()) return {found_in(words), words};
   VariantVerdict out = of_modes(study.modes);
   if (out.words.empty() && study.status != "completed" && study.values.empty())
