@@ -13,6 +13,13 @@ namespace {
 // Eigenvalues nearer than this part of themselves are looked at: may they be one, parted by rounding?
 constexpr double nearest_part = 1e-5;
 
+// |A| |x| of all vectors x: the size of the sums that A x is made of.
+Eigen::MatrixXd sums(const Eigen::MatrixXd& a, const std::vector<Eigen::VectorXcd>& vectors) {
+  Eigen::MatrixXd sizes(a.rows(), static_cast<Eigen::Index>(vectors.size()));
+  for (std::size_t k = 0; k < vectors.size(); ++k) sizes.col(static_cast<Eigen::Index>(k)) = vectors[k].cwiseAbs();
+  return a.cwiseAbs() * sizes;
+}
+
 // A x of all vectors x, by two products of real matrices: Eigen multiplies a real matrix and a complex one entry by
 // entry.
 Eigen::MatrixXcd images(const Eigen::MatrixXd& a, const std::vector<Eigen::VectorXcd>& vectors) {
@@ -101,7 +108,10 @@ DensePencil::Doubt DensePencil::doubt() const {
   const bool any = std::ranges::any_of(values_, asked) || std::ranges::find(near, true) != near.end();
   const Eigen::MatrixXcd left = any ? this->left() : Eigen::MatrixXcd();
   const Eigen::MatrixXcd of_a = any ? images(a_, vectors_) : left, of_b = any ? images(b_, vectors_) : left;
+  const Eigen::MatrixXd sums_a = any ? sums(a_, vectors_) : Eigen::MatrixXd(),
+                        sums_b = any ? sums(b_, vectors_) : Eigen::MatrixXd();
   const double size_a = a_.norm(), size_b = b_.norm();
+  constexpr double safety = 10;
   for (std::size_t k = 0; k < values_.size(); ++k) {
     if (!asked(values_[k]) && !near[k]) continue;
     const auto column = static_cast<Eigen::Index>(k);
@@ -111,12 +121,19 @@ DensePencil::Doubt DensePencil::doubt() const {
         left.size() > 0 ? (eps * size * vectors_[k].norm() + left_over) * left.row(column).norm() : 1e-11 * largest;
     const double moved = std::isfinite(first) ? std::min(first, most) : most;
     if (asked(values_[k])) out[k] = moved;
+    // Rows of very different size make that bound far too large. What the eigenvalue moves by to first order, y^T (A -
+    // lambda B) x with y^T B x = 1, has errors of each row by itself.
+    if (asked(values_[k]) && !near[k] && left.size() > 0) {
+      const double step = std::abs((left.row(column) * (of_a.col(column) - values_[k] * of_b.col(column)))(0)),
+                   blur = eps * left.row(column).cwiseAbs().dot(
+                                    (sums_a.col(column) + std::abs(values_[k]) * sums_b.col(column)).transpose());
+      if (std::isfinite(step + blur)) out[k] = std::min(out[k], safety * (step + blur));
+    }
     if (near[k]) doubt.blur[k] = std::min(moved, nearest_part * std::abs(values_[k]));
   }
   // The QZ algorithm is backward stable for the norm of the pencil, not row by row: with stiff springs on light masses
   // it returns growing eigenvalues that a step of Newton's method moves by about as much as they grow. Their sign means
   // nothing: a step of a tenth of the real part is asked for.
-  constexpr double safety = 10;
   for (std::size_t k = 0; k < values_.size(); ++k)
     if (values_[k].real() > out[k] && std::isfinite(std::abs(values_[k])))
       out[k] = std::max(out[k], std::min(safety * newton_step(k), std::abs(values_[k])));

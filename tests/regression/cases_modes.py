@@ -54,6 +54,19 @@ def divergence(h):
     h.close("after a reduction [1/s]", found[1]["real"], found[0]["real"], 0.02 * found[0]["real"])
 
 
+def stiff(h):
+    """Light nodes in stiff bearings: rounding of rows that are 1e14 apart must not hide a threshold. Its whole shaft loses stability where a reduced one
+    does, from whatever side and however far away the branch comes."""
+    found = []
+    for k, (start, end, reduction) in enumerate(((1000, 3000, "none"), (1400, 1300, "none"), (900, 2000, "{type: guyan, masters: [1, 4, 9, 12]}"))):
+        study = f"studies=[{{equilibrium_branch: {{name: b, range: {{from: {start} rpm, to: {end} rpm}}, detect: [hopf]}}}}]"
+        over = [] if reduction == "none" else [f"rotor.reduction={reduction}"]
+        found.append(h.run(h.source / "tests/cases/turbocharger.yaml", f"turbocharger {k}", [study, *over], launcher=[])["b"]["bifurcations"])
+    reduced, = found.pop()
+    for hopf, in found:
+        h.close("threshold [rpm]", hopf["value"], reduced["value"], 0.1 + abs(reduced.get("reduction_error") or 0))
+
+
 def of_beam(n, damping, middle, speed):
     """Eigenvalues [1/s] of the shaft of symmetric_shaft.yaml in n linear elements with one shear point each, of second order (Hughes,
     Taylor and Kanoknukulchai (1977), IJNME 11, 1529); shear coefficient of Cowper (1966). `middle`: stiffness at mid-span [N/m]."""
@@ -331,5 +344,5 @@ def level_1(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {f.__name__: f for f in (divergence, equal, fine, level_1, limits, many, missing, supports, textbook)}[sys.argv[3]](harness)
+    {f.__name__: f for f in (divergence, equal, fine, level_1, limits, many, missing, stiff, supports, textbook)}[sys.argv[3]](harness)
     harness.finish()
