@@ -42,8 +42,11 @@ struct Usual {
   double to_unit;
   const char* examples;
 };
+bool is_usual(double value, const Usual& usual) {
+  return value >= usual.least && value <= usual.most;
+}
 void judge(double value, const Usual& usual, const std::string& name, std::vector<std::string>& lines) {
-  if (value == 0 || (value >= usual.least && value <= usual.most)) return;
+  if (value == 0 || is_usual(value, usual)) return;
   lines.push_back(fmt::format("{}: a {} of {:.4g} {} is unusual ({}): is its unit right?", name, usual.what,
                               value * usual.to_unit, usual.unit, usual.examples));
 }
@@ -55,6 +58,7 @@ constexpr Usual liquid_density{"density", 500, 3000, "kg/m^3", 1, "oils have abo
 // From plastics to tungsten carbide.
 constexpr Usual modulus{"modulus", 1e9, 1e12, "GPa", 1e-9, "steel has about 206 GPa, aluminium 70 GPa"};
 constexpr Usual shear_modulus{"shear modulus", 3e8, 5e11, "GPa", 1e-9, "steel has about 80 GPa, aluminium 26 GPa"};
+constexpr Usual gas_density{"density", 0.05, 50, "kg/m^3", 1, "air has 1.2 kg/m^3 at 20 degC"};
 constexpr Usual gas_viscosity{"viscosity", 5e-6, 1e-4, "mPa s", 1e3, "air has 0.018 mPa s at 20 degC"};
 
 }  // namespace
@@ -87,6 +91,8 @@ std::vector<std::string> unusual_lubricants(const system::Machine& machine) {
       else
         judge(fluid.viscosity, liquid_viscosity, place, here);
       judge(fluid.density, liquid_density, place, here);
+      // Both of a gas: its units are right, and a study may put a film of gas in the place of this one.
+      if (is_usual(fluid.viscosity, gas_viscosity) && is_usual(fluid.density, gas_density)) here.clear();
     }
     for (std::string& line : here)
       if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));

@@ -64,18 +64,21 @@ public:
     core::agree(comm_, [&] { bearing_.emplace(support, options_.speed.value); });
   }
 
-  // The locus ends where journal and bearing touch; some bores carry no vertical load at small eccentricities.
+  // Where no film is found the locus has a gap; some bores carry no vertical load at small eccentricities.
   void follow() {
     BearingEquilibrium last;
     core::agree(comm_, [&] { last = bearing_->centred(); });
     for (int i = 1; i <= options_.points; ++i) {
+      const double wanted = options_.max_eccentricity * i / options_.points;
       const auto point = piece(fmt::format("point {}", i), [&]() -> std::optional<Point> {
-        const auto e = reach(last, options_.max_eccentricity * i / options_.points);
+        const auto e = reach(last, wanted);
         if (!e) return std::nullopt;
         return complete(*e);
       });
-      if (!point && !bearing_->rigid()) break;
-      if (!point) continue;
+      if (!point) {
+        missing.push_back(wanted);
+        continue;
+      }
       locus.push_back(*point);
       last = point->at;
     }
@@ -157,16 +160,26 @@ public:
   std::vector<Loaded> loaded;
   std::optional<BearingEquilibrium> threshold;
   std::vector<double> radii, angles, along, across;
-  std::string refused;  // loads that the map does not reach, with the reason
+  std::vector<double> missing;  // eccentricities without a film that carries a load downwards
+  std::string refused;          // loads that the map does not reach, with the reason
 
-  // The last eccentricity carries the next load only if the film exists there.
-  [[nodiscard]] bool touches() const { return locus.back().at.eccentricity < options_.max_eccentricity * (1 - 1e-12); }
+  [[nodiscard]] bool ends_early() const {
+    return locus.back().at.eccentricity < options_.max_eccentricity * (1 - 1e-12);
+  }
 
 private:
-  // In as few steps as lead there: from a far one the film of a soft bearing may not be found although it exists.
-  std::optional<BearingEquilibrium> reach(BearingEquilibrium last, double wanted) {
+  // In as few steps as lead there: from a far one the film of a soft bearing may not be found although it exists. An
+  // earlier start may lead past where none is found.
+  std::optional<BearingEquilibrium> reach(const BearingEquilibrium& last, double wanted) {
+    constexpr int near = 64, far = 4;
     if (bearing_->rigid() || wanted <= last.eccentricity) return bearing_->carrying(wanted, last);
-    const double shortest = (wanted - last.eccentricity) / 64;
+    auto found = reach(last, wanted, near);
+    for (auto earlier = locus.rbegin(); !found && earlier != locus.rend(); ++earlier)
+      found = reach(earlier->at, wanted, far);
+    return found;
+  }
+  std::optional<BearingEquilibrium> reach(BearingEquilibrium last, double wanted, int most_steps) {
+    const double shortest = (wanted - last.eccentricity) / most_steps;
     for (double step = wanted - last.eccentricity; step >= shortest;) {
       const double next = std::min(last.eccentricity + step, wanted);
       if (auto e = bearing_->carrying(next, last)) {
@@ -188,9 +201,9 @@ private:
         "{:.6g} at {:.4g}: {}",
         refused.empty() ? "" : "; ", s, low->at.sommerfeld, low->at.eccentricity, high->at.sommerfeld,
         high->at.eccentricity,
-        small       ? "give more 'points', which begin at smaller eccentricities"
-        : touches() ? "there journal and bearing touch"
-                    : "raise 'max_eccentricity'");
+        small          ? "give more 'points', which begin at smaller eccentricities"
+        : ends_early() ? "beyond it no film was found"
+                       : "raise 'max_eccentricity'");
   }
   Point complete(const BearingEquilibrium& e) {
     Point p{e, {}};
@@ -407,10 +420,14 @@ StudyResult BearingMap::run(Context& context) {
   put_bars(context, pieces, options, which, map, groups);
   summary.points = static_cast<long>(map.locus.size());
   if (!map.refused.empty()) return results.finish(map.refused, false);
-  return results.finish(map.touches() ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
-                                                    map.locus.back().at.eccentricity)
-                                      : "completed",
-                        true);
+  const double end = map.locus.back().at.eccentricity;
+  std::string gaps;
+  for (const double e : map.missing)
+    if (e > map.locus.front().at.eccentricity && e < end) gaps += fmt::format("{}{:.4g}", gaps.empty() ? "" : ", ", e);
+  if (!gaps.empty()) summary.warnings.push_back("no film was found at the eccentricities " + gaps);
+  return results.finish(
+      map.ends_early() ? fmt::format("ended at eccentricity {:.6g}: beyond it no film was found", end) : "completed",
+      true);
 }
 
 }  // namespace whirl::study

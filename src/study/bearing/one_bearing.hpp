@@ -40,8 +40,8 @@ public:
   OneBearing(const system::Support& support, double speed);
   /// A film on a rigid bore without own states: its force does not depend on what was before.
   [[nodiscard]] bool rigid() const { return film_->states() == 0 && !soft_; }
-  /// The journal at this eccentricity, sought from an equilibrium `near` it (attitude and states). Empty where the film
-  /// does not exist: journal and bearing touch.
+  /// The journal at this eccentricity, sought from an equilibrium `near` it (attitude and states). Empty where no film
+  /// is found, or none that carries a load downwards.
   [[nodiscard]] std::optional<BearingEquilibrium> carrying(double eccentricity, const BearingEquilibrium& near);
   /// The centred journal, to start from.
   [[nodiscard]] BearingEquilibrium centred() const;
