@@ -1,6 +1,7 @@
 #include "whirl/system/rotor_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -29,10 +30,10 @@ RotorSystem::RotorSystem(MPI_Comm comm, Varying varying, double speed)
 
 RotorSystem::~RotorSystem() = default;
 
-// Where the option ends at p, the difference is one-sided.
+// Where the option ends at p, the difference is one-sided. A search may be far outside the range of the option.
 RotorSystem::Slope& RotorSystem::slope() {
   if (slope_) return *slope_;
-  const double p = varying_.value, step = 1e-5 * varying_.magnitude;
+  const double p = varying_.value, step = 1e-5 * std::max(varying_.magnitude, std::abs(p));
   const auto beside = [&](double there) -> std::pair<double, Train> {
     try {
       return {there, varying_.train(there)};

@@ -54,6 +54,19 @@ def divergence(h):
     h.close("after a reduction [1/s]", found[1]["real"], found[0]["real"], 0.02 * found[0]["real"])
 
 
+def softened(h):
+    """A spring of negative stiffness at mid-span, less and less of it: the shaft stands once the sum of the flexibilities, of the bent and sheared
+    shaft and of its two supports, is that of the spring. Pairs without damping lie on the border as well, and do not cross it."""
+    second, area, shear = math.pi * 0.04**4 / 64, math.pi * 0.04**2 / 4, 6 * 1.3 / (7 + 6 * 0.3)
+    holds = 1 / (1 / (48 * 210e9 * second) + 1 / (4 * shear * 210e9 / 2.6 * area) + 1 / (2 * 20e6))
+    b, = h.run(h.source / "tests/cases/symmetric_shaft.yaml", "softened", [
+        "elements={spring: {node: 11, role: other, static_load: false, stiffness: [-5e6 N/m, 0 N/m, 0 N/m, 0 N/m]}}",
+        "studies=[{equilibrium_branch: {name: q, parameter: elements.spring.stiffness.1, speed: 100 rad/s, range: {from: -5e6 N/m, to: 1e6 N/m}}}]"],
+        launcher=[])["q"]["bifurcations"]
+    h.close("stiffness that holds the shaft [N/m]", -b["value"], holds, 1e-4 * holds)
+    h.true("by a real eigenvalue", b["type"] == "branch_point" and b["stable_side"] == "above", str(b))
+
+
 def stiff(h):
     """Light nodes in stiff bearings: rounding of rows that are 1e14 apart must not hide a threshold. Its whole shaft loses stability where a reduced one
     does, from whatever side and however far away the branch comes."""
@@ -344,5 +357,5 @@ def level_1(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {f.__name__: f for f in (divergence, equal, fine, level_1, limits, many, missing, stiff, supports, textbook)}[sys.argv[3]](harness)
+    {f.__name__: f for f in (divergence, equal, fine, level_1, limits, many, missing, softened, stiff, supports, textbook)}[sys.argv[3]](harness)
     harness.finish()

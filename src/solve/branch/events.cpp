@@ -225,11 +225,29 @@ void Follower::crossings(const State& a, const State& b, int depth) {
     suspect(a, b, "more than two values cross the border of stability at once");
   }
 
+  // A count changes by one with a real eigenvalue: pairs without damping lie as near to the border, and do not cross.
+  const bool single = !questions_.cycles && std::abs(to - from) == 1;
+  const auto growing = [](const State& s) {
+    const Stability& all = s.point.stability;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < all.values.size(); ++i) n += all.values[i].imag() == 0 && all.distance[i] > 0;
+    return n;
+  };
+  const std::size_t rank = single ? std::min(growing(a), growing(b)) : static_cast<std::size_t>(std::min(from, to));
   // A search for a few eigenvalues may return fewer at one point: those left out are no less stable than its last.
-  const auto k = static_cast<std::size_t>(std::min(from, to));
-  const Test test = [k](const State& s) {
-    const auto& d = s.point.stability.distance;
-    return d.empty() ? -1.0 : d[std::min(k, d.size() - 1)];
+  const auto crossing = [single, rank](const State& s) {
+    const auto& values = s.point.stability.values;
+    std::size_t last = values.size(), seen = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (single && values[i].imag() != 0) continue;
+      last = i;
+      if (seen++ == rank) break;
+    }
+    return last;
+  };
+  const Test test = [&crossing](const State& s) {
+    const std::size_t i = crossing(s);
+    return i < s.point.stability.distance.size() ? s.point.stability.distance[i] : -1.0;
   };
   LocatedEvent found{};
   found.unstable_before = from;
@@ -240,7 +258,8 @@ void Follower::crossings(const State& a, const State& b, int depth) {
       a, b, test,
       [&](const State& here) {
         const auto& values = here.point.stability.values;
-        found.critical = values.empty() ? 0.0 : values[std::min(k, values.size() - 1)];
+        const std::size_t i = crossing(here);
+        found.critical = i < values.size() ? values[i] : 0.0;
         // At a fold of a self-excited cycle the critical multiplier meets the trivial one at +1, and round-off splits
         // the double value into a pair of the size of its square root. On a coarse mesh that is larger, but a pair
         // would change the count by two: one of these was taken for the trivial multiplier.
