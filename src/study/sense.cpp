@@ -145,6 +145,17 @@ void put_film_numbers(io::StudySummary& summary, const std::string& head, const 
                 mean_free_path(*gas, support.lubricant.viscosity, gas->ambient) / report.min_thickness, "1");
 }
 
+void warn_of_slip(io::StudySummary& summary, const system::Support& support, double thinnest) {
+  const auto* gas = film::find<film::Gas>(support.film);
+  if (!gas) return;
+  const double knudsen = mean_free_path(*gas, support.lubricant.viscosity, gas->ambient) / thinnest;
+  if (knudsen > slip_limit(*gas))
+    summary.warnings.push_back(fmt::format(
+        "the Knudsen number reaches {:.4g} where the film is thinnest ({:.3g} um); its law of slip holds up to {:g}: "
+        "see 'slip'",
+        knudsen, 1e6 * thinnest, slip_limit(*gas)));
+}
+
 void warn_of_films(io::StudySummary& summary, const system::Train& train) {
   const auto value = [&](const std::string& name) -> io::Quantity {
     const auto at = std::find_if(summary.values.begin(), summary.values.end(),

@@ -37,6 +37,9 @@ inline constexpr double white_metal_load = 5e6, white_metal_pressure = 20e6;  //
 void put_film_numbers(io::StudySummary& summary, const std::string& head, const system::Support& support,
                       const film::FilmReport& report, double load, double speed);
 
+/// Warns of films of gas that are thinner than their law of slip allows; `thinnest` [m] of what a study computed.
+void warn_of_slip(io::StudySummary& summary, const system::Support& support, double thinnest);
+
 /// Warns of what the values of put_film_numbers() and `max_pressure` say, beyond their bars.
 void warn_of_films(io::StudySummary& summary, const system::Train& train);
 

@@ -143,6 +143,9 @@ def slip(h):
         load, attitude = linear(number / factor, 1)
         h.close(f"{name}: load", value(s, head + "load"), load * 101325 * 0.01 * 0.01 * 0.01, 2.5e-3 * value(s, head + "load"))
         h.close("    attitude", value(s, head + "attitude"), attitude, 2e-3)
+        # 0.0669 over the thickness at the largest eccentricity, beyond 0.01 and within 0.1 and 1.
+        h.true("    warned of beyond the law of slip", any("law of slip" in w for w in s.get("warnings", [])) == (name != "second" and knudsen / 0.6 > {"none": 0.01, "first": 0.1}[name]),
+               str(s.get("warnings")))
     h.run(deck, "whole", launcher=[])
 
 
