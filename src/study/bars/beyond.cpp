@@ -33,11 +33,12 @@ std::string place(const io::Bifurcation& b) {
   return "this value";
 }
 
-// As many digits as the bar supports, three to six.
+// As many digits as the bar supports, to its first one; three to six.
 std::string brief(double value, double bar, const std::string& unit) {
   int digits = 4;
   if (std::isfinite(bar) && bar > 0 && value != 0)
-    digits = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value))) - std::floor(std::log10(bar))), 3, 6);
+    digits =
+        std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value))) - std::floor(std::log10(bar))) + 1, 3, 6);
   if (value == 0) return "0 " + unit;
   const double step = std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - digits);
   std::string text = fmt::format("{:.10g}", std::round(value / step) * step);
