@@ -166,10 +166,10 @@ TEST(Sentence, SaysWhereWhirlBeginsAndNeverThatItJumpsUpWhereItEnds) {
     for (const auto type : {BifurcationType::hopf, BifurcationType::flip, BifurcationType::neimark_sacker}) {
       const std::string ends = sentence(type, criticality, type == BifurcationType::flip ? 1 : 2, 0, true);
       EXPECT_EQ(ends.find("jumps to"), std::string::npos) << ends;
-      EXPECT_EQ(ends.rfind("stable again above 4471 rpm", 0), 0U) << ends;
+      EXPECT_EQ(ends.rfind("stable again above 4470.7 rpm", 0), 0U) << ends;
     }
   EXPECT_EQ(sentence(BifurcationType::hopf, "supercritical", 2, 0, false),
-            "stable above 4471 rpm: whirl shrinks to nothing there");
+            "stable above 4470.7 rpm: whirl shrinks to nothing there");
 }
 
 TEST(Sentence, OfAFurtherPairSaysNoMore) {
