@@ -18,6 +18,7 @@ RUNS = {
     "chart_compliance": ("compliant_rotor/stability_chart.yaml", []),
     "figure_5_10": ("compliant_rotor/figure_5_10.yaml", ["bearings.half.film.compliance=1"]),
     "brusselator": ("other_systems/brusselator.yaml", []),
+    **{f"tutorial/{f}": (f"tutorial/{f}.yaml", []) for f in ("1_springs", "2_unbalance", "3_oil_films", "4_limit_cycle", "5_seal", "6_own_whirl")},
 }
 # Picture of docs/: run and picture in its results.
 PICTURES = {
@@ -52,6 +53,12 @@ PICTURES = {
     "chart_load": ("chart_load", "loci"),
     "chart_compliance": ("chart_compliance", "loci"),
     "brusselator": ("brusselator", "oscillation.orbits"),
+    "tutorial/1_springs": ("tutorial/1_springs", "Campbell.campbell"),
+    "tutorial/2_unbalance": ("tutorial/2_unbalance", "response.response"),
+    "tutorial/3_oil_films": ("tutorial/3_oil_films", "threshold.equilibria"),
+    "tutorial/4_limit_cycle": ("tutorial/4_limit_cycle", "bifurcations"),
+    "tutorial/5_seal": ("tutorial/5_seal", "clearance.threshold"),
+    "tutorial/6_own_machine": ("tutorial/6_own_whirl", "whirl.cycles-vertical"),
 }
 
 

@@ -85,7 +85,8 @@ TEST(ShownCommands, ThoseOfThePagesAreAccepted) {
   for (const char* folder : {"docs", "inputs"})
     for (const auto& e : fs::recursive_directory_iterator(root / folder))
       if (e.path().extension() == ".md") pages.push_back(e.path());
-  static const std::regex command(R"re((inputs/\S+\.yaml)((?:\s+--set\s+[\w.{},*]+\+?=(?:"[^"]*"|[^\s"`]+))*))re");
+  static const std::regex command(
+      R"re((inputs/[^\s`()\]]+\.yaml)((?:\s+--set\s+[\w.{},*]+\+?=(?:"[^"]*"|[^\s"`]+))*))re");
   for (const auto& page : pages) {
     const std::string text = text_of(page, false);
     for (std::sregex_iterator m(text.begin(), text.end(), command), last; m != last; ++m) {
