@@ -9,6 +9,7 @@ import typing
 import h5py
 import numpy as np
 
+from .answer import answer
 from .table import Table
 
 # The table that a kind of study is about.
@@ -94,6 +95,11 @@ class Study:
             return text(data)
         data = np.asarray(data)
         return np.array([text(v) for v in data.ravel()]).reshape(data.shape) if data.dtype.kind in "OS" else data
+
+    @property
+    def answer(self):
+        """What the study found: `sentences`, and `tables` with units and bars, as screen and report show them."""
+        return answer(self.summary)
 
     def bearings(self, count):
         """Names of the bearings, or of what another system shows; numbered if the study gave none."""

@@ -19,21 +19,6 @@ def at(b):
     return f"{with_bar(b.get('value'), b.get('uncertainty'))} {unit if unit != '1' else ''}".strip()
 
 
-def static(study):
-    values, out = study.values, []
-    films = {k.split(".")[1]: v.value for k, v in values.items() if k.endswith(".min_thickness") and v.value is not None}
-    if films:
-        thinnest = min(films, key=films.get)
-        out.append(f"thinnest film {person(films[thinnest], 'm', 3)} in {thinnest}")
-    loads = {k.split(".", 1)[1]: v.value for k, v in values.items() if k.startswith("load.") and v.value is not None}
-    if loads:
-        heaviest = max(loads, key=loads.get)
-        out.append(f"largest load {person(loads[heaviest], 'N', 4)} on {heaviest}")
-    if "power_loss" in values and values["power_loss"].value:
-        out.append(f"power loss {person(values['power_loss'].value, 'W', 4)}")
-    return out
-
-
 def modes(study):
     if not study.has("spectrum/speed"):
         return [f"{len(study.modes)} natural frequencies"] if study.modes else []
@@ -163,13 +148,13 @@ def sweep(study):
     return sweep_tables.brief(study)
 
 
-KINDS = {"static": static, "modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch, "cycle_branch": branch, "motion": motion,
+KINDS = {"modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch, "cycle_branch": branch, "motion": motion,
          "bearing_map": bearing_map, "locus": locus, "run_up": run_up, "sweep": sweep}
 
 
 def of(study):
     """What a study found; empty if there is nothing to say in a sentence."""
-    said = [s for s in KINDS.get(study.kind, lambda _: [])(study) if s]
+    said = study.answer.sentences + [s for s in KINDS.get(study.kind, lambda _: [])(study) if s]
     if study.status not in ("", "completed") and not any(s.startswith("ends: ") for s in said):
         said.append(study.status)
     return "; ".join(said)

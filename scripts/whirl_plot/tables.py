@@ -42,34 +42,6 @@ def table_of(caption, labels, columns, note="", one_unit=False):
     return Table(caption, head, cells, note) if len(head) > 1 and cells else None
 
 
-def static(study):
-    values = study.values
-    names = study.bearings(len(study.get("bearings/name", [])))
-    get = lambda key: [values[key.format(n)].value if key.format(n) in values else None for n in names]  # noqa: E731
-    x, y, load = (np.atleast_1d(study.get(f"bearings/{k}", [None] * len(names))).tolist() for k in ("x", "y", "load"))
-    clearance = study.get("bearings/clearance")
-    ratio = [math.hypot(a, b) / c if a is not None and c > 0 else None for a, b, c in zip(x, y, clearance)] if clearance is not None else []
-    out = [table_of("Bearings: loads and journal positions", names,
-                    [("load", "N", load), ("x", "m", x), ("y", "m", y), ("|e|/c", "1", ratio),
-                     ("smallest film", "m", get("bearing.{}.min_thickness")), ("largest pressure", "Pa", get("bearing.{}.max_pressure")),
-                     ("side flow", "m^3/s", get("bearing.{}.side_flow")), ("inlet flow", "m^3/s", get("bearing.{}.inlet_flow")),
-                     ("power loss", "W", get("bearing.{}.power_loss"))],
-                    "load of the journal on the bearing, positive down; place of the journal relative to the bearing centre; c assembled clearance, "
-                    "which a journal between two lobes may exceed sideways")]
-    for letter, unit, words in (("K", "N/m", "Stiffness of the films"), ("C", "N s/m", "Damping of the films")):
-        out.append(table_of(words, names, [(entry, unit, get(f"bearing.{{}}.{letter}.{entry}")) for entry in ("xx", "xy", "yx", "yy")],
-                            "K = \u2212dF/dx, C = \u2212dF/d(dx/dt) of the force on the journal", one_unit=True))
-    return out
-
-
-def alignment(study):
-    values = study.values
-    names = [k.split(".", 1)[1] for k in values if k.startswith("elevation.")]
-    get = lambda key: [values[f"{key}.{n}"].value if f"{key}.{n}" in values else None for n in names]  # noqa: E731
-    return [table_of("Alignment on rigid supports", names, [("elevation", "m", get("elevation")), ("reaction as in the deck", "N", get("reaction")),
-                                                            ("reaction aligned", "N", get("reaction_aligned"))])]
-
-
 def modes(study):
     out, unit = [], study.attribute("speed_unit", "rad/s")
     to_speed, _, to_frequency, frequency_unit = speed_axis(unit)
@@ -312,13 +284,14 @@ def sweep(study):
     return sweep_tables.tables(study, Table)
 
 
-FINDINGS = {"static": static, "alignment": alignment, "modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch,
+FINDINGS = {"modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch,
             "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus, "bearing_map": bearing_map, "sweep": sweep}
 
 
 def findings(study):
     """The tables of a study that answer what it was asked, without those that have nothing to say."""
-    return [t for t in FINDINGS.get(study.kind, lambda s: [bifurcations(s)])(study) if t is not None and t.rows]
+    own = [Table(t.caption, t.heads, [[c.text for c in row] for row in t.rows], t.note) for t in study.answer.tables]
+    return own + [t for t in FINDINGS.get(study.kind, lambda s: [bifurcations(s)])(study) if t is not None and t.rows]
 
 
 def applied_unbalance(results):

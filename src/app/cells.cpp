@@ -15,21 +15,6 @@ std::string number(std::optional<double> value) {
   return fmt::format("{:.{}f}", *value, std::max(0, 4 - before));
 }
 
-std::string in_usual_unit(const io::Quantity& q) {
-  const auto bar = q.more.find("uncertainty");
-  const auto shown = [&](double value, double factor, const std::string& unit) {
-    const io::Quantity there{factor * value, unit,
-                             bar == q.more.end()
-                                 ? std::map<std::string, double>{}
-                                 : std::map<std::string, double>{{"uncertainty", factor * bar->second}}};
-    return cell_of(there) + (unit.empty() ? "" : " " + unit);
-  };
-  if (q.unit == "m") return std::abs(q.value) < 0.01 ? shown(q.value, 1e6, "um") : shown(q.value, 1e3, "mm");
-  if (q.unit == "Pa") return shown(q.value, 1e-6, "MPa");
-  if (q.unit == "K") return shown(q.value - 273.15, 1, "degC");
-  return shown(q.value, 1, q.unit == "1" ? "" : q.unit);
-}
-
 std::string cell_of(const io::Quantity& q, double factor) {
   if (!std::isfinite(q.value)) return "-";
   const auto bar = q.more.find("uncertainty");

@@ -25,9 +25,6 @@ using io::with_uncertainty;
 /// The same, of four digits without a bar where that is below 0.2 % of the value.
 [[nodiscard]] std::string brief_cell(const io::Quantity& q, double factor = 1);
 
-/// A value with its bar in the unit that a person reads: "23.2 +- 0.4 um", "61.3 degC".
-[[nodiscard]] std::string in_usual_unit(const io::Quantity& q);
-
 /// `text` in lines of at most widest_line after `indent` spaces, more after the first one.
 [[nodiscard]] std::string in_lines(const std::string& text, std::size_t indent);
 

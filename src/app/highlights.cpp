@@ -12,23 +12,6 @@
 namespace whirl::app {
 namespace {
 
-std::string of_static(const io::StudySummary& s, const Values& v) {
-  Grid grid({"bearing", "load [kN]", "x [um]", "y [um]", "least film [um]", "pressure [MPa]"});
-  for (const std::string& b : Values::between(s, "load.", "")) {
-    const std::string head = "bearing." + b + ".";
-    grid.add({b, v.cell("load." + b, 1e-3), v.cell(head + "x", 1e6), v.cell(head + "y", 1e6),
-              v.cell(head + "min_thickness", 1e6), v.cell(head + "max_pressure", 1e-6)});
-  }
-  return grid.text();
-}
-
-std::string of_alignment(const io::StudySummary& s, const Values& v) {
-  Grid grid({"bearing", "elevation [um]", "load [kN]"});
-  for (const std::string& b : Values::between(s, "elevation.", ""))
-    grid.add({b, v.cell("elevation." + b, 1e6), v.cell("reaction_aligned." + b, 1e-3)});
-  return grid.text();
-}
-
 std::string of_bearing_map(const io::StudySummary& s, const Values& v) {
   std::string out;
   if (v.get("threshold.speed"))
@@ -147,8 +130,6 @@ std::string of_sweep(const io::StudySummary& s, std::span<const io::StudySummary
 
 std::string highlights(const io::StudySummary& s, std::span<const io::StudySummary> before) {
   const Values v(s);
-  if (s.kind == "static") return of_static(s, v);
-  if (s.kind == "alignment") return of_alignment(s, v);
   if (s.kind == "modes") return of_modes(s, v);
   if (s.kind == "unbalance_response") return of_response(s, before);
   if (s.kind == "equilibrium_branch") return of_equilibria(s, v);

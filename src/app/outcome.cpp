@@ -26,6 +26,24 @@ std::string in_words(const std::vector<io::StabilityRange>& ranges) {
   return ranges.size() > 1 && ranges[0].unit != "1" ? text + " " + ranges[0].unit : text;
 }
 
+std::string brief_text(const io::Brief& brief) {
+  std::string text;
+  for (const std::string& sentence : brief.sentences) text += in_lines(sentence, 2);
+  for (const io::BriefTable& t : brief.tables) {
+    std::vector<std::string> heads;
+    for (const io::BriefColumn& c : t.columns) heads.push_back(c.name + (c.shown.empty() ? "" : " [" + c.shown + "]"));
+    Grid grid(std::move(heads));
+    for (const auto& row : t.rows) {
+      std::vector<std::string> cells;
+      for (const io::BriefCell& c : row) cells.push_back(c.text.empty() ? "-" : c.text);
+      grid.add(std::move(cells));
+    }
+    text += in_lines(t.caption, 2) + grid.text();
+    if (!t.note.empty()) text += in_lines(t.note, 4);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string headline_text(const io::StudySummary& s) {
@@ -55,7 +73,7 @@ std::string answer_text(const io::StudySummary& s, std::span<const io::StudySumm
   }
   for (const io::Suspicion& x : s.suspected)
     text += fmt::format("  not resolved from {:.7g} to {:.7g} {}: {}\n", x.from, x.to, x.unit, x.reason);
-  return text + highlights(s, before);
+  return text + brief_text(s.brief) + highlights(s, before);
 }
 
 std::string service_text(const io::Service& service) {
@@ -63,7 +81,9 @@ std::string service_text(const io::Service& service) {
   std::string text = fmt::format("at the service speed, {:.6g} {}:\n", service.speed.value, service.speed.unit);
   for (const io::ServiceFact& f : service.facts) {
     std::vector<std::string> words;
-    if (std::isfinite(f.value.value)) words.push_back(in_usual_unit(f.value));
+    if (std::isfinite(f.value.value))
+      words.push_back(
+          io::reading(f.value.unit == "K" ? io::Quantity{f.value.value - 273.15, "degC", f.value.more} : f.value));
     if (!f.place.empty()) words.push_back("at " + f.place);
     std::string line = fmt::format("{}", fmt::join(words, " "));
     if (!f.mark.empty()) line += (line.empty() ? "" : ", ") + f.mark;

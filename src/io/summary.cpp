@@ -5,39 +5,16 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
-#include <set>
 
 #include "io/atomic_file.hpp"
+#include "io/json.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::array<const char*, 6> bifurcation_names = {"fold", "hopf",           "cyclic_fold",
                                                           "flip", "neimark_sacker", "branch_point"};
-
-Json number(double x) {
-  return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
-
-double number(const Json& j) {
-  return j.is_null() ? no_value : j.get<double>();
-}
-
-Json text_or_null(const std::string& s) {
-  return s.empty() ? Json(nullptr) : Json(s);
-}
-
-// The numbers of an object under keys that are not `known`.
-std::map<std::string, double> others(const Json& j, const std::set<std::string>& known) {
-  std::map<std::string, double> out;
-  for (const auto& [key, value] : j.items())
-    if (!known.contains(key)) out[key] = number(value);
-  return out;
-}
 
 Json to_json(const Bifurcation& b) {
   Json j = {{"type", name_of(b.type)},
@@ -119,16 +96,6 @@ CodimensionTwo codimension_two(Json j) {
   return c;
 }
 
-Json to_json(const Quantity& q) {
-  Json j = {{"value", number(q.value)}, {"unit", q.unit}};
-  for (const auto& [key, value] : q.more) j[key] = number(value);
-  return j;
-}
-
-Quantity quantity(const Json& j) {
-  return {number(j.at("value")), j.at("unit"), others(j, {"value", "unit"})};
-}
-
 // The quantities of a peak, by name.
 using PeakQuantity = std::pair<const char*, Quantity PeakEntry::*>;
 constexpr std::array<PeakQuantity, 5> peak_quantities = {
@@ -140,7 +107,7 @@ constexpr std::array<PeakQuantity, 5> peak_quantities = {
 Json to_json(const PeakEntry& p) {
   Json j = {{"place", p.place}};
   for (const auto& [name, which] : peak_quantities)
-    if (!(p.*which).unit.empty()) j[name] = to_json(p.*which);
+    if (!(p.*which).unit.empty()) j[name] = quantity_to_json(p.*which);
   if (!p.stability.empty()) j["stability"] = p.stability;
   if (!p.verdict.empty()) j["verdict"] = p.verdict;
   if (!p.notes.empty()) j["notes"] = p.notes;
@@ -163,12 +130,12 @@ Json to_json(const Service& s) {
   for (const ServiceFact& f : s.facts) {
     Json j = {{"what", f.what}};
     if (!f.place.empty()) j["place"] = f.place;
-    if (!f.value.unit.empty()) j.update(to_json(f.value));
+    if (!f.value.unit.empty()) j.update(quantity_to_json(f.value));
     if (!f.mark.empty()) j["mark"] = f.mark;
     j["study"] = text_or_null(f.study);
     facts.push_back(std::move(j));
   }
-  Json j = to_json(s.speed);
+  Json j = quantity_to_json(s.speed);
   j["facts"] = std::move(facts);
   return j;
 }
@@ -244,7 +211,7 @@ void take_sweep(const Json& j, StudySummary& s) {
 
 Json to_json(const StudySummary& s) {
   Json values = Json::object();
-  for (const auto& [name, q] : s.values) values[name] = to_json(q);
+  for (const auto& [name, q] : s.values) values[name] = quantity_to_json(q);
   Json bifurcations = Json::array(), modes = Json::array();
   for (const Bifurcation& b : s.bifurcations) bifurcations.push_back(to_json(b));
   for (const ModeEntry& m : s.modes) {
@@ -282,6 +249,7 @@ Json to_json(const StudySummary& s) {
   for (const Suspicion& x : s.suspected)
     j["suspected"].push_back({{"from", number(x.from)}, {"to", number(x.to)}, {"unit", x.unit}, {"reason", x.reason}});
   put_sweep(j, s);
+  if (!s.brief.sentences.empty() || !s.brief.tables.empty()) j["brief"] = brief_to_json(s.brief);
   return j;
 }
 
@@ -316,6 +284,7 @@ StudySummary study(const Json& j) {
   }
   s.points = j.at("points");
   take_sweep(j, s);
+  if (j.contains("brief")) s.brief = brief_of(j.at("brief"));
   return s;
 }
 

@@ -19,6 +19,8 @@ void run_one(Study& study, MPI_Comm comm, const Deck& deck, const Say& say, bool
                     resume, deck.studies, part};
     StudyResult result = result_of(study, context);
     put_premises(result, deck.machine, study);
+    result.summary.brief = study.brief(result, store.summaries());
+    io::typeset(result.summary.brief);
     store.add(std::move(result));
     if (findings.shows_progress()) say("", false);
   }

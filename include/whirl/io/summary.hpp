@@ -2,25 +2,15 @@
 // summary.json: the contract with scripts and users' own tools.
 
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "whirl/io/brief.hpp"
+#include "whirl/io/quantity.hpp"
+
 namespace whirl::io {
-
-inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-
-/// A number with its unit; NaN and infinity become null in the file.
-struct Quantity {
-  double value = no_value;
-  std::string unit = {};
-  std::map<std::string, double> more = {};  ///< "uncertainty" and its parts, in the same unit
-
-  /// "uncertainty", in `unit`: the value is within this much on either side; 0 if it is not known.
-  [[nodiscard]] double bar() const;
-};
 
 enum class BifurcationType { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point };
 [[nodiscard]] const char* name_of(BifurcationType type);
@@ -148,6 +138,7 @@ struct StudySummary {
   std::vector<VariantSummary> variants = {};  ///< of a sweep; in the file only if there are any, like what follows
   std::vector<SweepColumn> columns = {};
   std::vector<Trend> trends = {};
+  Brief brief = {};  ///< what a reader wants to know first; in the file only if there is any
   long points = 0;
 
   /// Sets values[key], replacing an earlier one.

@@ -93,6 +93,11 @@ public:
   /// Computes; ends with `return context.results.finish(...)`. Throws core::NotConverged or core::DomainError if it can
   /// deliver nothing. Collective.
   [[nodiscard]] virtual StudyResult run(Context& context) = 0;
+  /// What a reader wants to know of its result first; `before` are the studies that ended earlier. It solves nothing.
+  [[nodiscard]] virtual io::Brief brief(const StudyResult& /*result*/,
+                                        std::span<const io::StudySummary> /*before*/) const {
+    return {};
+  }
   /// Studies that its result calls for, each with results of its own: the branches born at the flips it found.
   [[nodiscard]] virtual std::vector<std::unique_ptr<Study>> further(const io::Group& /*result*/) const { return {}; }
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "whirl/rotor/alignment.hpp"
@@ -52,6 +53,17 @@ StudyResult Alignment::run(Context& context) {
   nodes.put("moment", aligned.moment, "N m", "bending moment of the aligned shaft, sagging positive");
   summary.points = 1;
   return context.results.finish("completed", true);
+}
+
+io::Brief Alignment::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  io::BriefTable table{"Alignment on rigid supports",
+                       {{"bearing"}, {"elevation", "m"}, {"load as in the deck", "N"}, {"load aligned", "N"}},
+                       {},
+                       "loads of the shaft on its supports, positive down"};
+  for (const std::string& b : v.between("elevation.", ""))
+    table.rows.push_back({b, v["elevation." + b], v["reaction." + b], v["reaction_aligned." + b]});
+  return {{}, {std::move(table)}};
 }
 
 }  // namespace whirl::study

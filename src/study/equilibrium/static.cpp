@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "study/bars/film_limit.hpp"
@@ -9,11 +10,13 @@
 #include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/film_at_rest.hpp"
+#include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/sense.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/deck/units.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
@@ -190,6 +193,23 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
                                        in_words(most)));
 }
 
+// "thinnest film 36.90 +- 0.16 um in B1, largest load 213.4 kN on B3, power loss 241 kW".
+std::string extremes(const Values& v) {
+  std::string words;
+  const auto say = [&](const char* what, const io::Quantity& q, const std::string& where) {
+    if (std::isfinite(q.value))
+      words += fmt::format("{}{} {}{}", words.empty() ? "" : ", ", what, io::reading(q), where);
+  };
+  const std::vector<std::string> films = v.between("bearing.", ".min_thickness"), loads = v.between("load.", "");
+  const auto film =
+      std::ranges::min_element(films, {}, [&](const auto& b) { return v["bearing." + b + ".min_thickness"].value; });
+  const auto load = std::ranges::max_element(loads, {}, [&](const auto& b) { return v["load." + b].value; });
+  if (film != films.end()) say("thinnest film", v["bearing." + *film + ".min_thickness"], " in " + *film);
+  if (load != loads.end()) say("largest load", v["load." + *load], " on " + *load);
+  if (const auto loss = v.get("power_loss"); loss && *loss > 0) say("power loss", v["power_loss"], "");
+  return words;
+}
+
 }  // namespace
 
 StudyResult Static::run(Context& context) {
@@ -276,6 +296,46 @@ StudyResult Static::run(Context& context) {
   if (options.fields) put_films(context, system, x, z, layout.shared);
   summary.points = 1;
   return context.results.finish("completed", true);
+}
+
+io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  io::BriefTable places{
+      fmt::format("Journals at rest at {}",
+                  io::reading({deck::from_si(options.speed.value, options.speed.unit), options.speed.unit})),
+      {{"bearing"},
+       {"load", "N"},
+       {"x", "m"},
+       {"y", "m"},
+       {"|e|/c", "1"},
+       {"thinnest film", "m"},
+       {"largest pressure", "Pa"},
+       {"highest temperature", "degC"},
+       {"side flow", "m^3/s"},
+       {"power loss", "W"}},
+      {},
+      "load of the journal on the bearing, positive down; place of the journal relative to the "
+      "bearing centre; c: assembled clearance"};
+  io::BriefTable matrices{"Stiffness K and damping C of the films",
+                          {{"bearing"}},
+                          {},
+                          "K = -dF/dx, C = -dF/d(dx/dt) of the force on the journal"};
+  for (const char* letter : {"K", "C"})
+    for (const char* pair : {"xx", "xy", "yx", "yy"})
+      matrices.columns.push_back({std::string(letter) + " " + pair, *letter == 'K' ? "N/m" : "N s/m"});
+  for (const std::string& b : v.between("load.", "")) {
+    const std::string head = "bearing." + b + ".";
+    const io::Quantity x = v[head + "eccentricity.x"], y = v[head + "eccentricity.y"];
+    places.rows.push_back({b, v["load." + b], v[head + "x"], v[head + "y"],
+                           io::Quantity{std::hypot(x.value, y.value), "1"}, v[head + "min_thickness"],
+                           v[head + "max_pressure"], in_celsius(v[head + "max_temperature"]), v[head + "side_flow"],
+                           v[head + "power_loss"]});
+    auto& row = matrices.rows.emplace_back();
+    row.emplace_back(b);
+    for (const char* letter : {"K.", "C."})
+      for (const char* pair : {"xx", "xy", "yx", "yy"}) row.emplace_back(v[head + letter + pair]);
+  }
+  return {{extremes(v)}, {std::move(places), std::move(matrices)}};
 }
 
 }  // namespace whirl::study

@@ -194,7 +194,7 @@ std::optional<Coordinate> coordinate(const std::string& quantity, const std::vec
 }
 
 // A value as a table of results shows it.
-std::string brief(const Node& value, const std::string& text) {
+std::string cut_to_line(const Node& value, const std::string& text) {
   const bool rows = value.kind == Node::Kind::list && !value.items.empty() && value.items[0].kind == Node::Kind::map;
   return rows ? fmt::format("a table of {} rows", value.items.size()) : text;
 }
@@ -256,7 +256,7 @@ void Sweep::prepare(const Node& root, std::span<const std::unique_ptr<Study>> be
         for (const deck::Edit& edit : s.edits) {
           if (a == 0) here = edit.place;
           const auto changes = deck::apply(edit, tree, deck::structure_of<Deck>(), files);
-          for (const deck::Change& c : changes) v.changes.emplace_back(c.path, brief(edit.value, c.after));
+          for (const deck::Change& c : changes) v.changes.emplace_back(c.path, cut_to_line(edit.value, c.after));
           if (!where) where = coordinate(edit.path, changes);
         }
         if (s.at) where = Coordinate{"at", *s.at, options.at.value_or(std::numeric_limits<double>::quiet_NaN()), "1"};

@@ -22,6 +22,7 @@ public:
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
+  [[nodiscard]] io::Brief brief(const StudyResult& result, std::span<const io::StudySummary> before) const override;
 };
 
 }  // namespace whirl::study

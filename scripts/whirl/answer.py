@@ -1,0 +1,73 @@
+"""The answer of a study, as summary.json has it: sentences and tables with units and bars."""
+import html
+import typing
+
+import numpy as np
+
+
+def plain(text):
+    """The text of a number as people write it: `5021.4 \u00b1 6.9`, a minus that is as long as a plus."""
+    return text.replace(" +- ", " \u00b1 ").replace("-", "\u2212") if text[:1] in "-(0123456789" else text
+
+
+class Cell(typing.NamedTuple):
+    """`text` is what a person reads, in the unit that the table shows; value and uncertainty are in `unit`, None where there is no number."""
+
+    text: str
+    value: typing.Optional[float] = None
+    uncertainty: typing.Optional[float] = None
+    unit: str = ""
+
+
+class AnswerTable(typing.NamedTuple):
+    """`columns` and `shown`: names and the units that a person reads; `units`: those of the numbers, SI or that of the study."""
+
+    caption: str
+    columns: list
+    shown: list
+    units: list
+    rows: list
+    note: str = ""
+
+    @property
+    def heads(self):
+        return [f"{name} [{unit}]" if unit else name for name, unit in zip(self.columns, self.shown)]
+
+    def column(self, name):
+        """Numbers of a column as an array in its unit, or its texts where it has none."""
+        k = self.columns.index(name)
+        values = [row[k].value for row in self.rows]
+        if all(v is None for v in values):
+            return [row[k].text for row in self.rows]
+        return np.array([np.nan if v is None else v for v in values])
+
+    def _repr_html_(self):
+        head = "".join(f"<th>{html.escape(h)}</th>" for h in self.heads)
+        body = "".join("<tr>" + "".join(f"<td>{html.escape(c.text)}</td>" for c in row) + "</tr>" for row in self.rows)
+        return f"<table><caption>{html.escape(self.caption)}</caption><tr>{head}</tr>{body}</table>"
+
+
+class Answer(typing.NamedTuple):
+    sentences: list
+    tables: list
+
+    def _repr_html_(self):
+        return "".join(f"<p>{html.escape(s)}</p>" for s in self.sentences) + "".join(t._repr_html_() for t in self.tables)
+
+
+def _cell(cell, unit):
+    if cell is None:
+        return Cell("\u2013")
+    if isinstance(cell, str):
+        return Cell(cell)
+    return Cell(plain(cell["text"]), cell["value"], cell.get("uncertainty"), unit or cell["unit"])
+
+
+def answer(summary):
+    """The answer in the entry of a study in summary.json; empty if it has none."""
+    brief = summary.get("brief", {})
+    tables = [AnswerTable(t["caption"], [c["name"] for c in t["columns"]], [c["shown"].replace("um", "\u00b5m") for c in t["columns"]],
+                          [c["unit"] for c in t["columns"]],
+                          [[_cell(cell, c["unit"]) for cell, c in zip(row, t["columns"])] for row in t["rows"]], t.get("note", ""))
+              for t in brief.get("tables", [])]
+    return Answer(list(brief.get("sentences", [])), tables)
