@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "known.hpp"
-#include "plausible.hpp"
 #include "schema.hpp"
 
 namespace whirl::deck {
@@ -230,10 +230,7 @@ namespace {
 // What help says of one option.
 std::string entry_text(const std::string& key, const Option& o) {
   const std::string value = default_text(o);
-  const Spec* spec = o.codec->spec();
   std::string out = fmt::format("{}\n    {}{}{}", key, o.codec->type(), value.empty() ? "" : "; ", value);
-  if (spec && spec->unit != "1" && spec->unit != "*" && spec->letter.empty())
-    out += fmt::format("; 0, or {} in size", plausible(spec->unit).text(coherent(spec->unit)));
   out += fmt::format("\n    {}{}\n", o.text, o.source.empty() ? "" : " [" + o.source + "]");
   for (const Alias& a : o.aliases)
     out += a.factor == 1 ? fmt::format("    may be written '{}'\n", a.key)
@@ -255,6 +252,17 @@ bool has_choice(const Option& o, std::string_view name) {
 
 bool has_alias(const Option& o, std::string_view name) {
   return std::any_of(o.aliases.begin(), o.aliases.end(), [&](const Alias& a) { return a.key == name; });
+}
+
+// Whether `text` has the word, or its plural.
+bool has_word(std::string_view text, std::string_view word) {
+  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    std::size_t end = at + word.size();
+    if (end < text.size() && text[end] == 's') ++end;
+    if ((at == 0 || !letter(text[at - 1])) && (end == text.size() || !letter(text[end]))) return true;
+  }
+  return false;
 }
 
 // The sources that `text` names, each with its full reference.
@@ -286,15 +294,23 @@ std::string reference_text(const Structure& structure, std::string_view path, st
     if (path.empty() || named || has_alias(o, path) || has_choice(o, path) || is_below(key, path, any_name))
       out += entry_text(key, o);
   });
-  if (out.empty()) {
-    // A path that leaves steps out.
-    const std::vector<std::string> asked = split_path(path);
-    for (const std::string& key : keys) {
+  // A path that leaves steps out.
+  const std::vector<std::string> asked = split_path(path);
+  if (out.empty() && asked.size() > 1)
+    walk(structure, {}, [&](const std::string& key, const Option& o) {
       auto next = asked.begin();
-      for (const std::string& step : split_path(key)) next += next != asked.end() && (step == *next || step == "NAME");
-      if (next == asked.end() && split_path(key).back() == asked.back())
-        throw core::InputError(fmt::format("there is no option '{}' (did you mean '{}'?)", path, key));
-    }
+      for (const std::string& step : split_path(key))
+        next += next != asked.end() && (step == *next || (step == "NAME" && next + 1 != asked.end()));
+      if (next == asked.end()) out += entry_text(key, o);
+    });
+  // A word of the explanations.
+  if (out.empty() && asked.size() == 1 && path.size() > 2)
+    walk(structure, {}, [&](const std::string& key, const Option& o) {
+      std::string said = o.text;
+      for (const Choice& c : choices_of(*o.codec)) said += " " + c.text;
+      if (has_word(said, path)) out += entry_text(key, o);
+    });
+  if (out.empty()) {
     keys.insert(keys.end(), words.begin(), words.end());
     throw core::InputError(fmt::format("there is no option '{}'{}", path, did_you_mean(path, keys)));
   }

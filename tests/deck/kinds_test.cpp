@@ -208,7 +208,7 @@ TEST(Kinds, TheReferenceNamesTheKinds) {
         "plate\n",
         "cells along x and y\n    applies where type is plate\n",
         "cells along x, y and z\n    applies where type is brick or ball\n",
-        "default 7850 kg/m^3; 0, or 1e-6 to 1e6 kg/m^3 in size\n    of the solid\n    may be written 'rho'\n    "
+        "default 7850 kg/m^3\n    of the solid\n    may be written 'rho'\n    "
         "applies "
         "where type is brick or ball\n    studies may vary it\n",
         "quantity in N/m, positive; required"})
