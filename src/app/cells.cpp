@@ -1,11 +1,24 @@
 #include "cells.hpp"
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace whirl::app {
+
+std::size_t widest_line() {
+  static const std::size_t columns = [] {
+    constexpr std::size_t narrowest = 60, without_terminal = 100, widest = 200;
+    winsize size{};
+    if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+      return without_terminal;
+    return std::clamp<std::size_t>(size.ws_col, narrowest, widest);
+  }();
+  return columns;
+}
 
 std::string number(std::optional<double> value) {
   if (!value) return "-";
@@ -34,7 +47,7 @@ std::string in_lines(const std::string& text, std::size_t indent) {
   for (std::size_t from = 0; from < text.size();) {
     const std::size_t to = std::min(text.find(' ', from), text.size());
     const std::string word = text.substr(from, to - from);
-    if (line.size() + 1 + word.size() > widest_line && line.find_first_not_of(' ') != std::string::npos) {
+    if (line.size() + 1 + word.size() > widest_line() && line.find_first_not_of(' ') != std::string::npos) {
       out += line + "\n";
       line.assign(indent + 2, ' ');
     }
@@ -102,7 +115,7 @@ std::string Grid::text() const {
   do {
     auto to = from;
     std::size_t wide = indent + width[0];
-    while (to != shown.end() && (to == from || wide + gap + width[*to] <= widest_line)) wide += gap + width[*to++];
+    while (to != shown.end() && (to == from || wide + gap + width[*to] <= widest_line())) wide += gap + width[*to++];
     for (const auto& row : rows_) {
       std::string line = fmt::format("{:{}}{:<{}}", "", indent, row[0], width[0]);
       for (auto c = from; c != to; ++c) line += fmt::format("{:{}}{:>{}}", "", gap, row[*c], width[*c]);

@@ -11,8 +11,9 @@
 
 namespace whirl::app {
 
-/// Widest line of a table. What is wider goes on below, with the first column again.
-inline constexpr std::size_t widest_line = 100;
+/// Widest line of a table: that of the terminal, 100 where there is none. What is wider goes on below, with the first
+/// column again.
+[[nodiscard]] std::size_t widest_line();
 
 /// Four digits; "-" if there is none.
 [[nodiscard]] std::string number(std::optional<double> value);

@@ -74,8 +74,12 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
     for (const char* kind : {io::Checkpoint::ending, ".xdmf"}) files.push_back(io::safe_name(s->name()) + kind);
   Directory held(comm, directory, study::resolved_text(deck), earlier, files);
   study::RunOptions options{directory, WHIRL_VERSION, {}, {}, request.resume};
+  std::size_t ended = 0;
   if (request.progress)
-    options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
+    options.say = [&](const std::string& line, bool /*transient*/) {
+      const std::string where = line.empty() ? "" : fmt::format("study {} of {}, ", ended + 1, deck.studies.size());
+      fmt::print(stderr, "\r\033[K{}", (where + line).substr(0, widest_line() - 1));
+    };
   // With a service speed what is known there comes before the answers of the studies, which need not wait to be seen
   // in the files.
   const bool opens_with_service = deck.machine.service_speed.has_value();
@@ -83,6 +87,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   std::vector<io::StudySummary> before;
   options.ended = [&](const io::StudySummary& s) {
     if (request.progress) fmt::print(stderr, "\r\033[K");
+    ++ended;
     const std::string answer = answer_text(s, before);
     before.push_back(s);
     print(headline_text(s) + (opens_with_service ? "" : answer));
@@ -102,9 +107,15 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
     print(answers);
     throw;
   }
+  std::string closing;
   core::agree(comm, [&] {
-    if (core::rank_of(comm) == 0)
-      text += service_text(io::Summary::read(fs::path(directory) / "summary.json").service) + answers;
+    if (core::rank_of(comm) != 0) return;
+    const io::Summary all = io::Summary::read(fs::path(directory) / "summary.json");
+    text += service_text(all.service) + answers;
+    std::size_t warnings = all.warnings.size();
+    for (const io::StudySummary& s : all.studies) warnings += s.warnings.size();
+    closing = fmt::format("results in {}{}; scripts/report {} writes tables and pictures on one page\n", directory,
+                          warnings == 0 ? "" : " with " + count(warnings, "warning", "warnings"), directory);
   });
   for (const auto& o : core::Session::options_in_force())
     if (o.source != "command line")
@@ -114,7 +125,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
     text += fmt::format("nothing has asked for the PETSc option {}\n", option);
   if (core::rank_of(comm) == 0 && !held.locked())
     text += fmt::format("'{}' cannot be locked: nothing would have kept a second run out\n", directory);
-  print(text + fmt::format("results in {}\n", directory));
+  print(text + closing);
   return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }
 
