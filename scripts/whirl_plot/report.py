@@ -1,9 +1,10 @@
 """One self-contained HTML page of a results folder: the machine, what was asked, the pictures, and all numbers."""
 import base64
+import hashlib
 import html
 import re
 import sys
-
+import time
 
 from . import __main__ as plot
 from . import brief, style, sweep_tables, tables
@@ -21,6 +22,9 @@ table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-a
 th,td{padding:.25em 1.1em .25em 0;text-align:left;border-bottom:1px solid var(--line);vertical-align:top} th{color:var(--grey);font-weight:600}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
 img{max-width:100%;border:1px solid var(--line);border-radius:4px} details{margin:.7em 0} summary{cursor:pointer;color:var(--blue)}
+body{counter-reset:figures tables} figcaption::before{counter-increment:figures;content:"Figure " counter(figures) ". ";font-weight:600}
+caption:not(:empty)::before{counter-increment:tables;content:"Table " counter(tables) ". "}
+@media print{nav{display:none} body{max-width:none;padding:0;font-size:10pt} figure,table,tr{break-inside:avoid} h2{break-after:avoid} .scroll{overflow:visible}}
 .bad{color:var(--bad);font-weight:600} .warn{color:var(--bad);margin:.2em 0;padding-left:1.2em} .scroll{overflow-x:auto} pre{background:#f3f6f9;padding:.8em;overflow-x:auto;font-size:.85em}
 """
 
@@ -40,8 +44,24 @@ CAPTIONS = {
     "trends": "Where bifurcations lie over what the sweep changes.", "impedance": "Resistance to a squeeze, over the journal's place.",
     "map-locus": "Where the journal rests under a load.", "map-stiffness": "Stiffness over the load.", "map-damping": "Damping over the load.",
     "map-stability": "Where a rigid rotor loses stability.", "map-pressure": "Pressure and thickness around the bearing.",
+    "harmonics": "Harmonics of the whirl of each cycle.", "critical-speeds": "Undamped critical speeds over the stiffness of the supports.",
+    "convergence": "Natural frequencies over the number of elements.", "shifts": "Frequencies of other elements against those of the deck.",
+    "conditions": "Condition of the eigenvalues.", "reduction-errors": "Errors of reduced shafts.", "reduction-orbits": "Orbits of whole and reduced shafts.",
+    "reduction-maps": "Entries of the reduced matrices.", "whirl-map": "Sense of whirl of each mode along the shaft, over the speed.",
+    "gas-curves": "Load, attitude, flow and losses of the gas film over the eccentricity.", "gas-isobars": "Pressure of the gas film.",
+    "gas-meshes": "Load over the mesh, by the model of the orifices.", "gas-knudsen": "Thickness of the film at which slip has to be counted.",
+    "line-modes": "Modes of torsion or along the axis.", "transfer": "Transfer functions of the motion under random forces.", "coherence": "Coherence: how much of the motion is linear in the forces.",
+    "excitation": "Spectrum of the random forces.", "thd-iterations": "Convergence of film and solids.", "thd-meshes": "Results of the film with heat over the mesh.",
+    "thd-budget": "Where the heat comes from and goes to, over the speed.", "thd-effective": "How well one temperature stands for the film.",
+    "thd-properties": "Clearance and properties of the fluid over the temperature.", "thd-profiles": "Temperature and velocity across the film.",
+    "thd-radial": "Temperature along the radius, from shaft to bush.", "thd-maps": "Pressure and temperature of the film, unwrapped.", "thd-velocity": "Velocity in the film.",
+    "thd-fluid": "Properties of the fluid in the film.", "thd-heat": "Heat per area of the film.", "thd-film": "Temperature in sections through the film.",
     "frequencies": "Stiffness and damping over the frequency of a vibration.", "stiffness": "Stiffness of the films.", "damping": "Damping of the films.",
 }
+# The same where the name ends with a place or a quantity.
+BY_PLACE = {"film-": "Film of bearing {}: pressure and thickness, unwrapped.", "coefficients-": "Coefficients of the film: {}.", "enforced-": "Coefficients by enforced motion: {}.",
+            "response-": "Transfer functions to {} (amplitude and phase).", "shapes-3d-": "Mode shapes in space: {}.", "shapes-": "Mode shapes along the shaft: {}.",
+            "orbits-": "Orbits: {}.", "multipliers-": "Floquet multipliers: {}."}
 CONVENTIONS = [
     ("Axes", "x to the right, y up, z along the shaft; nodes are numbered from 1 along z."),
     ("Rotation", "from x to y, counter-clockwise with x to the right. Forward whirl turns with the shaft."),
@@ -53,12 +73,15 @@ CONVENTIONS = [
 ]
 
 
+NUMBER = re.compile(r"\(?[\u2212-]?[0-9.]+(e[\u2212+-]?\d+)?( \u00b1 [0-9.]+)?(\)e[\u2212+-]?\d+)?( %)?|\u2013|without limit")
+
+
 def escape(text):
     return html.escape(str(text))
 
 
 def numeric(cell):
-    return isinstance(cell, (int, float)) or bool(re.fullmatch(r"[\u2212-]?[0-9.]+(e[\u2212-]?\d+)?( \u00b1 [0-9.]+)?( %)?|\u2013", str(cell)))
+    return isinstance(cell, (int, float)) or bool(re.fullmatch(NUMBER, str(cell)))
 
 
 def marked(cell, verdict=False):
@@ -85,10 +108,12 @@ def anchor(name):
 def picture(path):
     kind = re.sub(r"\d+$", "", path.stem.rsplit(".", 1)[-1])
     words = CAPTIONS.get(kind) or CAPTIONS.get(re.sub(r"-\d*$", "", kind), "")
-    if kind.startswith("film-"):
-        words = f"Film of bearing {kind.removeprefix('film-')}: pressure and thickness, unwrapped."
+    for head, told in BY_PLACE.items():
+        if kind.startswith(head):
+            words = told.format(kind.removeprefix(head).replace("-", " "))
+    words = words or f"{kind.replace('-', ' ').capitalize()}."
     data = base64.b64encode(path.read_bytes()).decode("ascii")
-    return f"<figure><img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption>{escape(words)} <code>{escape(path.name)}</code></figcaption></figure>"
+    return f"<figure><img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption title='{escape(path.name)}'>{escape(words)}</figcaption></figure>"
 
 
 def all_values(study):
@@ -204,11 +229,18 @@ def pictures_of(results):
     return found, [p for p in every if p not in used]
 
 
+def origin(directory):
+    """When a run ended and of what deck: the folder, and the first digits of the SHA-256 of the deck as it was understood."""
+    summary, deck = directory / "summary.json", directory / "resolved.yaml"
+    when = [time.strftime("%d %B %Y, %H:%M", time.localtime(summary.stat().st_mtime))] if summary.is_file() else []
+    return when + [f"results in {escape(directory.name)}"] + ([f"deck {hashlib.sha256(deck.read_bytes()).hexdigest()[:12]}"] if deck.is_file() else [])
+
+
 def page_of(results):
     studies, general = pictures_of(results)
     summary, title = results.summary, escape(results.title)
     ended = [s for s in results.studies if s.status != "completed"]
-    facts = [f"whirl {escape(summary.get('version', ''))}"]
+    facts = [f"whirl {escape(summary.get('version', ''))}", *origin(results.directory)]
     if summary.get("ranks"):
         facts.append(escape(counted(summary["ranks"], "rank")))
     if isinstance(summary.get("wall_seconds"), (int, float)):
