@@ -108,18 +108,6 @@ def motion(study):
     return [str(study.attribute("motion", "")).replace("_", " ")]
 
 
-def bearing_map(study):
-    values, out = study.values, []
-    if study.has("locus/sommerfeld", "locus/eccentricity"):
-        load, e = study.get("locus/sommerfeld"), study.get("locus/eccentricity")
-        out.append(f"eccentricities {digits(float(e.min()), 3)} to {digits(float(e.max()), 3)}, loads up to S = {digits(float(load.max()), 3)}")
-    if "threshold.speed" in values:
-        v, e = values["threshold.speed"], values.get("threshold.eccentricity")
-        out.append(f"the deck's rotor, taken as rigid, is stable up to {with_bar(v.value, v.uncertainty)} {v.unit}"
-                   + (f", eccentricity {digits(e.value, 3)}" if e else ""))
-    return out
-
-
 def locus(study):
     if not study.has("locus/parameter", "locus/second"):
         return []
@@ -149,7 +137,7 @@ def sweep(study):
 
 
 KINDS = {"modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch, "cycle_branch": branch, "motion": motion,
-         "bearing_map": bearing_map, "locus": locus, "run_up": run_up, "sweep": sweep}
+         "locus": locus, "run_up": run_up, "sweep": sweep}
 
 
 def of(study):

@@ -263,29 +263,12 @@ def locus(study):
                   rows)] if rows else []
 
 
-def bearing_map(study):
-    """The border of stability of the rotor that the deck has, if it has one, and loads that were asked for."""
-    values, heads = study.values, {}
-    for key in values:
-        head, _, what = key.rpartition(".")
-        if what in ("eccentricity", "sommerfeld", "attitude", "speed_limit", "whirl_ratio", "speed", "nondimensional_speed"):
-            heads.setdefault(head, []).append(what)
-    rows = []
-    for head, keys in heads.items():
-        for what in keys:
-            v = values[f"{head}.{what}" if head else what]
-            factor, unit = scale_of(v.unit, v.value or 0.0)
-            rows.append([head.replace(".", " ").replace("_", " "), what.replace("_", " "),
-                         f"{with_bar(None if v.value is None else v.value * factor, None if v.uncertainty is None else v.uncertainty * factor)} {unit}".strip()])
-    return [Table("Bearing by itself", ["at", "", "value"], rows, "threshold: where the rigid rotor of the deck loses stability in this bearing")] if rows else []
-
-
 def sweep(study):
     return sweep_tables.tables(study, Table)
 
 
 FINDINGS = {"modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch,
-            "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus, "bearing_map": bearing_map, "sweep": sweep}
+            "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus, "sweep": sweep}
 
 
 def findings(study):

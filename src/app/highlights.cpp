@@ -12,54 +12,6 @@
 namespace whirl::app {
 namespace {
 
-std::string of_bearing_map(const io::StudySummary& s, const Values& v) {
-  std::string out;
-  if (v.get("threshold.speed"))
-    out += fmt::format(
-        "  a rigid rotor of this load is stable up to {}, at eccentricity {}, and whirls at {} of the speed\n",
-        with_uncertainty(*v.get("threshold.speed"), v.bar("threshold.speed"), "rad/s"),
-        v.cell("threshold.eccentricity"), v.cell("threshold.whirl_ratio"));
-  Grid grid({"Sommerfeld number", "eccentricity", "attitude [deg]", "speed limit", "whirl ratio"});
-  for (const std::string& load : Values::between(s, "sommerfeld.", ".eccentricity")) {
-    const std::string head = "sommerfeld." + load + ".";
-    grid.add({load, v.cell(head + "eccentricity"), v.cell(head + "attitude", 180 / std::numbers::pi),
-              v.cell(head + "speed_limit"), v.cell(head + "whirl_ratio")});
-  }
-  return out + grid.text();
-}
-
-// A row for each speed, frequency and enforced amplitude of the summary; tilts stand in the tables.
-std::string of_coefficients(const io::StudySummary& s, const Values& v) {
-  const std::vector<std::string> speeds = Values::between(s, "speed.", ".eccentricity");
-  const std::string amplitude = ".amplitude.";
-  const bool enforced = std::ranges::any_of(
-      s.values, [&](const auto& named) { return named.first.find(amplitude) != std::string::npos; });
-  const auto unit_of = [&](const std::string& speed) { return v.unit("speed." + speed + ".speed"); };
-  // In the head where it is the same for all.
-  const bool mixed =
-      std::ranges::any_of(speeds, [&](const auto& other) { return unit_of(other) != unit_of(speeds.front()); });
-  const std::string unit = speeds.empty() || mixed ? "" : " [" + unit_of(speeds.front()) + "]";
-  std::vector<std::string> heads{"speed" + unit, "eccentricity", "omega/Omega"};
-  if (enforced) heads.emplace_back("amplitude");
-  for (const char* head : {"K xx [N/m]", "K xy", "K yx", "K yy", "C xx [N s/m]", "C xy", "C yx", "C yy"})
-    heads.emplace_back(head);
-  Grid grid(heads);
-  for (const std::string& speed : speeds) {
-    const std::string head = "speed." + speed + ".";
-    for (const std::string& ratio : Values::between(s, head + "ratio.", ".K.xx")) {
-      const std::size_t found = ratio.find(amplitude);
-      std::vector<std::string> row{mixed ? speed + " " + unit_of(speed) : speed, v.cell(head + "eccentricity"),
-                                   ratio.substr(0, found)};
-      if (enforced) row.push_back(found == std::string::npos ? "small" : ratio.substr(found + amplitude.size()));
-      for (const char* letter : {".K.", ".C."})
-        for (const char* pair : {"xx", "xy", "yx", "yy"})
-          row.push_back(v.cell(head + "ratio." + ratio + letter + pair));
-      grid.add(std::move(row));
-    }
-  }
-  return grid.text();
-}
-
 // What the studies of the rows say of stability: the deck as given, whose studies stand `before` the sweep, and the
 // variants.
 std::vector<study::VariantVerdict> verdicts_of(const io::StudySummary& s, std::size_t given,
@@ -136,8 +88,6 @@ std::string highlights(const io::StudySummary& s, std::span<const io::StudySumma
   if (s.kind == "cycle_branch") return of_cycles(s, v);
   if (s.kind == "run_up") return of_run_up(s, v);
   if (s.kind == "motion") return of_motion(s, v);
-  if (s.kind == "bearing_map") return of_bearing_map(s, v);
-  if (s.kind == "dynamic_coefficients") return of_coefficients(s, v);
   if (s.kind == "frequency_response") return of_transfers(s, v);
   if (s.kind == "sweep") return of_sweep(s, before);
   return {};

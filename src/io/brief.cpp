@@ -35,6 +35,8 @@ constexpr Scale scales[] = {{"m", all_sizes, 1e6, "um"},
                             {"W", 1e4, 1e-3, "kW"},
                             {"W", 1e7, 1e-6, "MW"},
                             {"m^3/s", all_sizes, 6e4, "l/min"},
+                            {"kg/s", all_sizes, 1e3, "g/s"},
+                            {"kg/s", 1, 1, "kg/s"},
                             {"rad", all_sizes, 180 / std::numbers::pi, "deg"},
                             {"kg m", all_sizes, 1e6, "g mm"},
                             {"kg m", 1e-3, 1e3, "kg mm"}};

@@ -19,10 +19,10 @@ struct Quantity {
   const char *key, *text;
 };
 constexpr std::array<Quantity, 3> held{{{"load", "load"}, {"power_loss", "power loss"}, {"mass_flow", "flow"}}};
-using Values = std::array<double, held.size()>;
+using HeldValues = std::array<double, held.size()>;
 
 // N, W, kg/s.
-Values values_of(const thermal::FlowReport& report) {
+HeldValues values_of(const thermal::FlowReport& report) {
   return {std::hypot(report.force[0], report.force[1]), report.power, report.inflow};
 }
 
@@ -59,7 +59,7 @@ std::optional<double> zero(const std::function<double(double)>& f, double a, dou
 void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, double ambient) {
   thermal::Thd& thd = film.thd();
   const thermal::FlowReport wanted_report = thd.flow().report(thd.flows());
-  const Values wanted = values_of(wanted_report);
+  const HeldValues wanted = values_of(wanted_report);
   const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
   std::vector<double> pressure;
   const auto at = [&](double temperature) { return film.isothermal(temperature, pressure, true).report; };
@@ -81,7 +81,7 @@ void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, d
         continue;
       }
       const thermal::FlowReport report = at(*found);
-      const Values values = values_of(report);
+      const HeldValues values = values_of(report);
       summary.set(fmt::format("temperature.effective.{}", held[q].key), *found, "K");
       names.emplace_back(held[q].key);
       temperatures.push_back(*found);

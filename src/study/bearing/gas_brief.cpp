@@ -1,0 +1,83 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "study/brief.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/study/bearing/gas_bearing.hpp"
+
+namespace whirl::study {
+
+io::Brief GasBearing::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  io::Brief brief;
+  if (v.get("capacity.load"))
+    brief.sentences.push_back(fmt::format("the film carries at most {}, at eccentricity {}",
+                                          io::reading(v["capacity.load"]), io::reading(v["capacity.eccentricity"])));
+  const std::string unit = options.speeds.front().unit;
+  const std::vector<io::BriefColumn> numbers{
+      {"load", "N"}, {"attitude", "rad"}, {"flow", "l/min"}, {"mass flow", "kg/s"}, {"power loss", "W"}};
+  const auto row_of = [&](std::vector<io::BriefCell> row, const std::string& head) {
+    for (const char* name : {"load", "attitude", "normal_flow", "mass_flow", "power_loss"})
+      row.emplace_back(v[head + name]);
+    return row;
+  };
+  const char* const note = "flow: of the gas at 0 degC and 101325 Pa; attitude: from the load to the journal";
+  io::BriefTable places{"Under the load", {{"speed", unit}, {"x", "m"}, {"y", "m"}, {"|e|/c", "1"}}, {}, note};
+  io::BriefTable curves{"Over the eccentricity", {{"speed", unit}, {"|e|/c", "1"}}, {}, note};
+  for (io::BriefTable* table : {&places, &curves})
+    table->columns.insert(table->columns.end(), numbers.begin(), numbers.end());
+  for (const deck::Quantity& speed : options.speeds) {
+    const io::Quantity shown{deck::from_si(speed.value, speed.unit), speed.unit};
+    const std::string head = fmt::format("equilibrium.speed.{:.6g}.", speed.value);
+    if (v.get(head + "load"))
+      places.rows.push_back(row_of({shown, v[head + "x"], v[head + "y"], v[head + "eccentricity"]}, head));
+    for (const double e : options.eccentricities) {
+      const std::string here = fmt::format("speed.{:.6g}.eccentricity.{:.6g}.", speed.value, e);
+      if (v.get(here + "load")) curves.rows.push_back(row_of({shown, io::Quantity{e, "1"}}, here));
+    }
+  }
+  brief.tables = {std::move(places), std::move(curves)};
+  const io::Group& all = result.group;
+  if (all.has_group("meshes")) {
+    const io::Group& m = all.group("meshes");
+    const auto around = m.reals("around"), along = m.reals("along"), rim = m.reals("load"),
+               node = m.reals("load_of_node_source");
+    io::BriefTable table{"Load over the mesh",
+                         {{"cells"}, {"source at the rim", "N"}, {"source in a node", "N"}},
+                         {},
+                         "a source in a node has no limit on ever finer meshes"};
+    for (std::size_t k = 0; k < rim.size(); ++k)
+      table.rows.push_back(
+          {fmt::format("{:.0f} x {:.0f}", around[k], along[k]), io::Quantity{rim[k], "N"}, io::Quantity{node[k], "N"}});
+    brief.tables.push_back(std::move(table));
+  }
+  if (all.has_group("map") && options.map) {
+    const io::Group& m = all.group("map");
+    const auto load = m.reals("load"), flow = m.reals("mass_flow"), loss = m.reals("power_loss");
+    io::BriefTable table{
+        fmt::format("Design map at eccentricity {}", io::reading(options.map->eccentricity)),
+        {{"clearance", "m"}, {"orifice", "m"}, {"load", "N"}, {"mass flow", "kg/s"}, {"power loss", "W"}},
+        {},
+        {}};
+    std::size_t k = 0;
+    for (const deck::Quantity& c : options.map->clearances)
+      for (const deck::Quantity& d : options.map->diameters) {
+        table.rows.push_back({io::Quantity{c.value, "m"}, io::Quantity{d.value, "m"}, io::Quantity{load.at(k), "N"},
+                              io::Quantity{flow.at(k), "kg/s"}, io::Quantity{loss.at(k), "W"}});
+        ++k;
+      }
+    const auto best = std::ranges::max_element(load, {}, [](double x) { return x == x ? x : -1; });
+    if (best != load.end() && *best == *best) {
+      const auto at = static_cast<std::size_t>(best - load.begin()), each = options.map->diameters.size();
+      brief.sentences.push_back(fmt::format("of the design map a clearance of {} with orifices of {} carries most, {}",
+                                            io::reading({options.map->clearances[at / each].value, "m"}),
+                                            io::reading({options.map->diameters[at % each].value, "m"}),
+                                            io::reading({*best, "N"})));
+    }
+    brief.tables.push_back(std::move(table));
+  }
+  return brief;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,46 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "study/brief.hpp"
+#include "whirl/study/bearing/bearing_map.hpp"
+
+namespace whirl::study {
+
+io::Brief BearingMap::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  io::Brief brief;
+  if (v.get("threshold.speed"))
+    brief.sentences.push_back(
+        fmt::format("the rotor of the deck, taken as rigid, is stable up to {} (eccentricity {}), and whirls at {} of "
+                    "the speed there",
+                    io::reading(v["threshold.speed"]), io::reading(v["threshold.eccentricity"].value),
+                    io::reading(v["threshold.whirl_ratio"].value)));
+  const std::vector<io::BriefColumn> numbers{
+      {"|e|/c", "1"}, {"attitude", "rad"}, {"speed limit", "1"}, {"whirl ratio", "1"}};
+  const char* const note = "S = (c/R)^2 load/(mu Omega L D); speed limit: Omega sqrt(m c/load) of a rigid rotor";
+  io::BriefTable loads{"At the loads asked for", {{"Sommerfeld S"}}, {}, note};
+  io::BriefTable locus{"Locus of the journal", {{"Sommerfeld S", "1"}}, {}, note};
+  for (io::BriefTable* table : {&loads, &locus})
+    table->columns.insert(table->columns.end(), numbers.begin(), numbers.end());
+  for (const std::string& load : v.between("sommerfeld.", ".eccentricity")) {
+    const std::string head = "sommerfeld." + load + ".";
+    loads.rows.push_back(
+        {load, v[head + "eccentricity"], v[head + "attitude"], v[head + "speed_limit"], v[head + "whirl_ratio"]});
+  }
+  // Ten of the points, the last one with them.
+  if (result.group.has_group("locus")) {
+    constexpr std::size_t most = 10;
+    const io::Group& g = result.group.group("locus");
+    const auto s = g.reals("sommerfeld"), e = g.reals("eccentricity"), a = g.reals("attitude"),
+               limit = g.reals("speed_limit"), ratio = g.reals("whirl_ratio");
+    const std::size_t n = e.size(), step = std::max<std::size_t>(1, (n + most - 1) / most);
+    for (std::size_t k = (n - 1) % step; k < n; k += step)
+      locus.rows.push_back({io::Quantity{s[k], "1"}, io::Quantity{e[k], "1"}, io::Quantity{a[k], "rad"},
+                            io::Quantity{limit[k], "1"}, io::Quantity{ratio[k], "1"}});
+  }
+  brief.tables = {std::move(loads), std::move(locus)};
+  return brief;
+}
+
+}  // namespace whirl::study
