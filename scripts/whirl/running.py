@@ -1,6 +1,7 @@
 """Running decks."""
 import os
 import pathlib
+import shutil
 import subprocess
 
 from .results import Error, read
@@ -17,10 +18,11 @@ class RunError(Error):
 
 
 def program():
-    """Path of the program: the variable WHIRL_PROGRAM, or build/whirl of this source tree."""
-    path = pathlib.Path(os.environ.get("WHIRL_PROGRAM", ROOT / "build" / "whirl"))
+    """Path of the program: the variable WHIRL_PROGRAM, build/whirl of this source tree, or the installed one."""
+    here = ROOT / "build" / "whirl"
+    path = pathlib.Path(os.environ.get("WHIRL_PROGRAM") or (here if here.is_file() else shutil.which("whirl") or here))
     if not path.is_file():
-        raise Error(f"there is no program {path}: build it with scripts/run, or name it in WHIRL_PROGRAM")
+        raise Error(f"there is no program {path}: build it with scripts/run, install it, or name it in WHIRL_PROGRAM")
     return path
 
 

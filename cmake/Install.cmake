@@ -1,0 +1,52 @@
+# What `cmake --install build` and the Debian package hold: the program, its man page, the Python modules with their two commands,
+# the decks, and the pages. No headers and no libraries: the rooms are not an interface for other programs before version 1.0.
+# Other programs run decks and read summary.json and results.h5.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # installing needs the program, not the tests
+include(GNUInstallDirs)
+set(WHIRL_PYTHON_DIR lib/python3/dist-packages CACHE STRING "folder of the Python modules below the prefix")
+
+install(TARGETS whirl RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+configure_file(${PROJECT_SOURCE_DIR}/docs/whirl.1 ${PROJECT_BINARY_DIR}/install/whirl.1 @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/install/whirl.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/whirl ${PROJECT_SOURCE_DIR}/scripts/whirl_plot DESTINATION ${WHIRL_PYTHON_DIR}
+        FILES_MATCHING PATTERN "*.py")
+# The version that Python's importlib.metadata finds.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/install/METADATA
+     CONTENT "Metadata-Version: 2.1\nName: whirl\nVersion: @PROJECT_VERSION@\nSummary: @PROJECT_DESCRIPTION@\n" @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/install/METADATA DESTINATION ${WHIRL_PYTHON_DIR}/whirl-${PROJECT_VERSION}.dist-info)
+foreach(WHIRL_COMMAND plot report)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/install/whirl-${WHIRL_COMMAND} @ONLY CONTENT [[
+#!/usr/bin/python3
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "@WHIRL_PYTHON_DIR@"))
+from whirl_plot.commands import @WHIRL_COMMAND@  # noqa: E402
+
+@WHIRL_COMMAND@()
+]])
+  install(PROGRAMS ${PROJECT_BINARY_DIR}/install/whirl-${WHIRL_COMMAND} DESTINATION ${CMAKE_INSTALL_BINDIR})
+endforeach()
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/whirl)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs PATTERN whirl.1 EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The Debian package: `cpack --config build/CPackConfig.cmake`, or scripts/package.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME whirl)
+set(CPACK_PACKAGE_CONTACT "the Whirl developers <whirl@example.org>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # the libraries that the program is linked with, by dpkg-shlibdeps
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, libopenblas0-pthread, python3, python3-numpy, python3-h5py, python3-matplotlib, python3-yaml")
+if(WHIRL_NATIVE)
+  # A program that is tuned for one processor does not run on an older one.
+  set(CPACK_DEBIAN_PACKAGE_RELEASE native)
+else()
+  set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+endif()
+include(CPack)

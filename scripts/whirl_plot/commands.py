@@ -1,0 +1,12 @@
+"""The commands whirl-plot and whirl-report of an installed Whirl."""
+import sys
+
+
+def plot():
+    from .__main__ import main
+    sys.exit(main(sys.argv[1:]))
+
+
+def report():
+    from .report import main
+    sys.exit(main(sys.argv[1:]))
