@@ -1,6 +1,7 @@
 """Reading a results folder: summary.json and results.h5."""
 import contextlib
 import functools
+import html
 import itertools
 import json
 import pathlib
@@ -100,6 +101,19 @@ class Study:
     def answer(self):
         """What the study found: `sentences`, and `tables` with units and bars, as screen and report show them."""
         return answer(self.summary)
+
+    @property
+    def multipliers(self):
+        """Floquet multipliers of the cycles of a branch as complex numbers, [point][multiplier]; None if it keeps none."""
+        if not self.has("branch/multipliers_real", "branch/multipliers_imag"):
+            return None
+        return self.get("branch/multipliers_real") + 1j * self.get("branch/multipliers_imag")
+
+    def _repr_html_(self):
+        """What a notebook shows: how the study ended, its warnings and its answer."""
+        warnings = self.summary.get("warnings", [])
+        return (f"<h4>{html.escape(self.name)} ({html.escape(self.kind)}, {html.escape(self.status)})</h4>"
+                + "".join(f"<p><b>{html.escape(str(w))}</b></p>" for w in warnings if isinstance(w, str)) + self.answer._repr_html_())
 
     def bearings(self, count):
         """Names of the bearings, or of what another system shows; numbered if the study gave none."""
@@ -265,6 +279,17 @@ class Results:
 
     def __repr__(self):
         return f"<results in {self.directory}: {', '.join(s.name for s in self.studies)}>"
+
+    def _repr_html_(self):
+        return f"<h3>{html.escape(self.title)}</h3>" + "".join(s._repr_html_() for s in self.studies)
+
+    def plot(self, formats=("png",)):
+        """Draws all pictures of the run into its folder; returns their paths. Needs matplotlib."""
+        from whirl_plot import __main__ as pictures
+        from whirl_plot import style, subject
+        style.use_style(tuple(formats))
+        with subject.Drawn(self.directory) as results:
+            return [pathlib.Path(file) for file in pictures.drawn(results)]
 
     def __getitem__(self, name):
         for study in self.studies:

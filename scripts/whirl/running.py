@@ -2,7 +2,9 @@
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
+import threading
 
 from .results import Error, read
 
@@ -43,7 +45,36 @@ def word(value):
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
-def run(deck, set=None, ranks=1, output=None, resume=False, options=(), check=True):
+def follow(command, progress, timeout):
+    """Exit code and text of a command. Its lines go to `progress` as they come; after `timeout` seconds it is ended, and all that it started."""
+    process = subprocess.Popen(command, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                               errors="replace", start_new_session=True)
+    late = threading.Event()
+
+    def end():
+        late.set()
+        os.killpg(process.pid, signal.SIGTERM)
+
+    clock = threading.Timer(timeout, end) if timeout else None
+    if clock:
+        clock.start()
+    try:
+        lines = []
+        for line in process.stdout:
+            lines.append(line)
+            if progress:
+                progress(line.rstrip("\n"))
+        process.wait()
+    except BaseException:  # a notebook that is interrupted leaves no run behind
+        os.killpg(process.pid, signal.SIGTERM)
+        raise
+    finally:
+        if clock:
+            clock.cancel()
+    return process.returncode, "".join(lines), late.is_set()
+
+
+def run(deck, set=None, ranks=1, output=None, resume=False, options=(), check=True, progress=None, timeout=None):
     """Runs a deck and returns its Results.
 
     deck      path of the deck
@@ -53,6 +84,8 @@ def run(deck, set=None, ranks=1, output=None, resume=False, options=(), check=Tr
     resume    go on with a run that was killed, or return what is there already
     options   further words of the command line, after `--` those of PETSc
     check     raise RunError also if a study could deliver nothing (exit code 3); its results can be read all the same
+    progress  called with each line that the program writes; True prints them
+    timeout   seconds after which the run is ended with RunError; `resume` goes on with it
     """
     deck = pathlib.Path(deck)
     output = pathlib.Path(output) if output is not None else pathlib.Path("results") / deck.stem
@@ -61,11 +94,23 @@ def run(deck, set=None, ranks=1, output=None, resume=False, options=(), check=Tr
         command += ["--set", f"{path}={word(value)}"]
     if ranks > 1:
         command = ["mpirun", "-n", str(ranks), "--quiet", "--bind-to", "none", *command]
-    done = subprocess.run([*command, *map(str, options)], env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
-    if done.returncode != 0 and (check or done.returncode != 3):
-        said = [line for line in done.stdout.splitlines() if line.strip()]
+    code, log, late = follow([*command, *map(str, options)], print if progress is True else progress, timeout)
+    if late:
+        raise RunError(f"{deck}: ended after {timeout:g} s; run it again with resume=True", code, log)
+    if code != 0 and (check or code != 3):
+        said = [line for line in log.splitlines() if line.strip()]
         reason = next((line for line in said if line.startswith("whirl: ")), None) or \
             next((line for line in said if ": " in line and ": completed" not in line), said[-1] if said else "")
-        raise RunError(f"{deck}: exit code {done.returncode}: {reason}", done.returncode, done.stdout)
+        raise RunError(f"{deck}: exit code {code}: {reason}", code, log)
     return read(output)
+
+
+def sweep(deck, over, of, output=None, **words):
+    """The studies named in `of` for every combination of values: {path: [values]} in `over`. Returns the Study of the sweep.
+
+        study = whirl.sweep("fan.yaml", {"bearings.*.geometry.clearance": ["60 um", "80 um"]}, of=["modes"])
+        study.answer
+    """
+    grid = ", ".join(f"{path}: {word(list(values))}" for path, values in over.items())
+    study = f"{{sweep: {{name: sweep, of: {word(list(of))}, grid: {{{grid}}}}}}}"
+    return run(deck, set={**(words.pop("set", None) or {}), "studies+": study}, output=output, **words)["sweep"]

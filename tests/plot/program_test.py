@@ -83,6 +83,37 @@ def undamped_friends(work):
             assert all(w in text for w in words) and not any(w in text for w in not_words), picture
 
 
+def of_python(work):
+    """A deck of dicts and arrays gives what its text gives; a sweep changes what it is told; time and texts are limited."""
+    support = {"type": "linear", "stiffness": ["10 MN/m", "0 N/m", "0 N/m", "20 MN/m"]}
+    deck = whirl.Deck(title="Shaft with a disc", rotor={
+        "segments": whirl.shaft(np.full(6, 250.0), np.float64(50)), "material": {"density": "7810 kg/m^3", "poisson": 0.3, "modulus": whirl.quantity(211, "GPa")},
+        "discs": [{"node": np.int64(3), "outer_diameter": "280 mm", "inner_diameter": "50 mm", "thickness": "70 mm"}]},
+        bearings={"A": {"node": 1, "film": support}, "B": {"node": 7, "film": support}}, studies=[{"modes": {"name": "m", "speeds": ["3000 rpm"], "count": 2}}])
+    lines = []
+    results = deck.run(work / "python", progress=lines.append)
+    text = SHAFT.format(segments=", ".join(["{length: 250 mm, diameter: 50 mm}"] * 6), middle=3, last=7)
+    (work / "text.yaml").write_text(text)
+    same = whirl.run(work / "text.yaml", output=work / "text")["m"].modes
+    assert [m["imag"] for m in results["m"].modes] == [m["imag"] for m in same] and any("completed" in line for line in lines), lines
+    study = whirl.sweep(work / "python.deck.yaml", {"rotor.material.modulus": ["211 GPa", "422 GPa"]}, of=["m"], output=work / "sweep")
+    assert study.kind == "sweep" and [v["changes"] for v in study.summary["variants"]][1] == {"rotor.material.modulus": "422 GPa"}, study.summary["variants"]
+    assert "Shaft with a disc" in results._repr_html_() and results["m"].multipliers is None
+    for wrong, words in (({"a": float("nan")}, "a: nan"), ({"a": [{"b": object()}]}, "a.1.b: a deck has no values of type object")):
+        try:
+            whirl.Deck(wrong).write(work / "wrong.yaml")
+        except whirl.Error as error:
+            assert words in str(error), error
+        else:
+            raise AssertionError(wrong)
+    try:
+        whirl.run(ROOT / "inputs/turbine_train/unbalance.yaml", output=work / "late", timeout=0.5)
+    except whirl.RunError as error:
+        assert "resume=True" in str(error), error
+    else:
+        raise AssertionError("no limit of time")
+
+
 SHAFT = """
 title: Shaft with a disc
 rotor:
@@ -141,6 +172,7 @@ def by_the_commands(script, directory, draw=None):
 with tempfile.TemporaryDirectory() as name:
     made(doubled_branch(pathlib.Path(name)), None, "Largest vibration of the stable cycles", "period doubles", "cylindrical", "25 \u00b5m", run=by_the_commands)
     undamped_friends(pathlib.Path(name))
+    of_python(pathlib.Path(name))
     made(slopes_along_the_shaft(pathlib.Path(name)), {"machine"}, "Shaft with a disc")
     made(nodes_of_a_branch(pathlib.Path(name)), {"machine", "b.nodes"}, "node 130, shaft", "lemon bore", "gen_pair")
 print("results are as the pictures need them")
