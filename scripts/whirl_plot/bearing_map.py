@@ -1,8 +1,7 @@
 """One bearing by itself: impedance, locus, stiffness, damping, stability and pressure; several bearings of a run together."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .curves import through
 from .style import GREY, INK, grid_of, save
 

@@ -2,10 +2,11 @@
 import re
 
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .bore import pads_of, reach
+from .canvas import Line2D
 from .curves import Branch
-from .style import BAD, DASHED, INK, X, Y, branch_legend, grid_of, least_span, mark, mark_end, parameter_label, save
+from .style import BAD, DASHED, GREY, INK, X, Y, branch_legend, grid_of, least_span, mark, mark_end, mark_service, parameter_label, save
 
 RANGE_ENDS = ("completed", "", "end of the range")
 
@@ -116,8 +117,10 @@ class Followed:
         changes = self.changes if curve is self.curve else {i - int(self.born): c for i, c in self.changes.items()}
         for x, y, solid in curve.stretches(values, self.along(values)[1], [p for _, _, p in self.places_on(curve)], changes):
             axis.plot(x * across, y, color=colour, linestyle="-" if solid else DASHED, linewidth=linewidth if solid else 0.8 * linewidth)
-        if len(values) == 1:
-            axis.plot(curve.parameter * across, values, ".", color=colour)
+        straight = curve.straight(values)
+        if len(values) == 1 or straight.any():  # what was computed, where no curve goes through it
+            at = np.append(straight, False) | np.insert(straight, 0, False) if len(values) > 1 else [True]
+            axis.plot(curve.parameter[at] * across, values[at], ".", color=colour, markersize=3.5 if len(values) > 1 else 6)
 
     def mark(self, axis, curves, scale=1.0, size=6, across=1.0):
         """Bifurcations and the early end of the branch, on each of the curves."""
@@ -162,6 +165,27 @@ def finish(axis, title, ylabel, xlabel, margin=0.12):
     axis.margins(y=margin)
 
 
+def over_speed(axis, study):
+    """Marks the service speed on an axis of the speed."""
+    if study.attribute("parameter", "") == "speed":
+        mark_service(axis, study, study.attribute("parameter_unit", ""))
+
+
+def mark_walls(axis, study, b, scale, direction="y"):
+    """Lines where the wall of the bore stands above and below the middle (y) or beside it (x), if a branch comes near."""
+    if not study.has("bearings/clearance") or study.has("places/name"):
+        return
+    angles = np.array([0.5, -0.5]) * np.pi if direction == "y" else np.array([0.0, 1.0]) * np.pi
+    (low, high), pads = axis.get_ylim(), pads_of(study, b)
+    for wall, sign in zip(reach(pads, angles) if pads else (), (1, -1)):
+        at = sign * wall * scale
+        if np.isfinite(at) and low - 0.15 * (high - low) <= at <= high + 0.15 * (high - low):
+            axis.set_ylim(min(low, at - 0.02 * (high - low)), max(high, at + 0.02 * (high - low)))
+            axis.axhline(at, color=GREY, linewidth=0.9, zorder=0.6)
+            axis.annotate("wall", (1, at), xycoords=axis.get_yaxis_transform(), xytext=(-2, 1), textcoords="offset points", ha="right", va="bottom", fontsize=6.5,
+                          color=GREY)
+
+
 def damped(study):
     """Real part of the least stable eigenvalue at each point, zero where it is rounding."""
     growth, undamped, unstable = (study.get(f"branch/{k}") for k in ("leading_real", "undamped_count", "unstable_count"))
@@ -201,12 +225,15 @@ def draw_equilibria(study):
         branch.mark(axis, [y[:, b], x[:, b]], scale)
         finish(axis, names[b], f"position [{unit}]", parameter_label(study))
         least_span(axis, scale * max(np.abs(x).max(), np.abs(y).max()))
+        mark_walls(axis, study, b, scale)
+        over_speed(axis, study)
     if growth is not None:
         axis = axes[-1]
         axis.axhline(0, color=BAD, linewidth=0.9)
         draw_growth(axis, branch, growth)
         finish(axis, "least stable eigenvalue", "real part [1/s]", parameter_label(study))
         least_span(axis, np.abs(growth).max())
+        over_speed(axis, study)
     directions = [Line2D([], [], color=Y, label="y, vertical"), Line2D([], [], color=X, label="x, horizontal")]
     behind = growth is not None and sum(kind in ("hopf", "fold") for kind in branch.kinds) > 1
     return save(figure, study, "equilibria", study.shown + ("; marks at zero: an eigenvalue crosses, perhaps not the least stable one" if behind else ""),
@@ -235,6 +262,8 @@ def draw_cycles(study):
         for axis, b in zip(axes, shown):
             draw_extremes(axis, branch, direction, b, scale, study.colour)
             finish(axis, names[b], f"{direction}, max and min [{unit}]", parameter_label(study))
+            mark_walls(axis, study, b, scale, direction)
+            over_speed(axis, study)
         note = f"largest and smallest {direction} ({words}) over one cycle: {study.shown}"
         unbalance = study.attribute("unbalance")
         files += save(figure, study, f"cycles-{words}", f"{note}; unbalance {unbalance}" if unbalance else note, legend([branch]))
@@ -255,6 +284,7 @@ def draw_nodes(study, branch):
         branch.mark(axis, [tables["amplitude"][:, k]], scale)
         finish(axis, f"node {node}, shaft", f"amplitude, 0-peak [{unit}]", parameter_label(study))
         axis.set_ylim(bottom=0)
+        over_speed(axis, study)
     handles = [Line2D([], [], color=c, label=w) for c, w in ((INK, "largest distance from the mean"), (Y, "y, vertical"), (X, "x, horizontal"))]
     return save(figure, study, "nodes", "x, y: half of the travel of the shaft in space", legend([branch], handles))
 
@@ -272,9 +302,12 @@ def draw_frequency(study):
     figure, (axis,), _ = grid_of(1, width=4.6, height=3.2)
     branch.draw(axis, ratio, study.colour)
     branch.mark(axis, [ratio])
-    axis.axhline(0.5, color=INK, linewidth=0.8, linestyle=":")
     finish(axis, "whirl frequency", "whirl frequency / running speed", parameter_label(study), 0.22)
-    return save(figure, study, "frequency", "self-excited cycles; dotted: half the running speed", legend([branch]))
+    low, high = axis.get_ylim()
+    near = low - (high - low) <= 0.5 <= high + (high - low)
+    if near:  # farther away it would flatten the curve
+        axis.axhline(0.5, color=INK, linewidth=0.8, linestyle=":")
+    return save(figure, study, "frequency", "self-excited cycles" + ("; dotted: half the running speed" if near else ""), legend([branch]))
 
 
 def draw_together(results):
@@ -305,5 +338,7 @@ def draw_together(results):
                 draw_extremes(axis, branch, "y", b, scale, colour, 5)
     for axis, b in zip(axes, shown):
         finish(axis, names[b], f"y, max and min [{unit}]", label)
+        mark_walls(axis, studies[0], b, scale)
+        over_speed(axis, studies[0])
     return save(figure, results.whole("all branches" if len(studies) > 1 else studies[0].name), "bifurcations",
                 f"y (vertical): {studies[0].shown}", legend(branches, handles))

@@ -24,12 +24,12 @@ def pads_of(study, b):
     return [(side * offset / 2, side * preload * radius, radius, np.pi * (1 + side / 2), arc) for side in (1, -1)]
 
 
-def reach(pads, angle):
+def reach(pads, angle, count=1441):
     """Distance from the bearing's centre to the wall in the directions `angle`: where the film of the nearest place of any pad
-    becomes zero. Infinite where no pad lies ahead."""
+    becomes zero, at `count` places of a pad. Infinite where no pad lies ahead."""
     found = np.full(np.shape(angle), np.inf)
     for ox, oy, radius, middle, arc in pads:
-        theta = middle + np.linspace(-0.5, 0.5, 1441) * arc
+        theta = middle + np.linspace(-0.5, 0.5, count) * arc
         ahead = np.cos(np.asarray(angle)[..., None] - theta)
         gap = radius + ox * np.cos(theta) + oy * np.sin(theta)
         with np.errstate(divide="ignore"):
@@ -44,38 +44,44 @@ def distance_in_words(study, b, x, y):
         return ""
     e = np.hypot(x, y)
     ratio = e / float(np.atleast_1d(study.get("bearings/clearance"))[b])
-    words = f"\n|e| = {ratio:.3f} $c_b$"
+    words = f"\n|e|/c = {ratio:.3f}"
     wall = float(reach(pads, np.array([np.arctan2(y, x)]))[0])
     if len(pads) > 1:
         words += f", {e / wall:.3f} of the way to the wall"
     return words
 
 
+def shade(axis, x, y):
+    """The inside of a closed curve. Axes that looked for its extent would take as long as all the rest; who calls this sets the limits."""
+    from matplotlib.patches import Polygon
+    axis.add_artist(Polygon(np.column_stack([x, y]), color=SHADE, linewidth=0, zorder=0))
+
+
 def draw_clearance(axis, study, b, points=()):
     """Pads as thick arcs; dotted between them how far the journal could go; the panel holds it and `points` (x, y in um)."""
     if study.has("bearings/outline_x", "bearings/outline_y"):
         x, y = (study.get(f"bearings/outline_{k}")[b] * 1e6 for k in "xy")
-        axis.fill(x, y, color=SHADE, zorder=0)
+        shade(axis, x, y)
         axis.plot(x, y, color=INK, linewidth=1.2)
     else:
         pads = pads_of(study, b)
         if not pads:
             return False
-        angle = np.linspace(0, 2 * np.pi, 721)
+        angle = np.linspace(0, 2 * np.pi, 361)
         # A pad at the bottom leaves the top open: the dotted line goes on as the circle of its radius.
         circle = np.min([ox * np.cos(angle) + oy * np.sin(angle) + np.sqrt(np.maximum(r**2 - (ox * np.sin(angle) - oy * np.cos(angle))**2, 0))
                          for ox, oy, r, _, _ in pads], axis=0)
-        wall = reach(pads, angle)
+        wall = reach(pads, angle, 361)
         radius = np.minimum(wall, circle) if len(pads) == 1 else np.minimum(wall, 1.3 * circle)
         x, y = radius * np.cos(angle) * 1e6, radius * np.sin(angle) * 1e6
         whole = all(arc >= 2 * np.pi for *_, arc in pads)
-        axis.fill(x, y, color=SHADE, zorder=0)
+        shade(axis, x, y)
         axis.plot(x, y, color=INK if whole else GREY, linewidth=1.2 if whole else 0.9, linestyle="-" if whole else ":")
         for ox, oy, r, middle, arc in pads if not whole else []:
             t = middle + np.linspace(-0.5, 0.5, 361) * arc
             px, py = ox + r * np.cos(t), oy + r * np.sin(t)
             # Only the part that the journal can reach; another pad is nearer elsewhere.
-            reached = np.hypot(px, py) <= reach(pads, np.arctan2(py, px)) * (1 + 1e-6)
+            reached = np.hypot(px, py) <= reach(pads, np.arctan2(py, px), 361) * (1 + 1e-6)
             axis.plot(np.where(reached, px, np.nan) * 1e6, np.where(reached, py, np.nan) * 1e6, color=INK, linewidth=1.8)
     axis.plot(0, 0, "+", color=GREY, markersize=7)
     side = 1.08 * max(np.nanmax(np.abs(v)) for v in (x, y, *points))

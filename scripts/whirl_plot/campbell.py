@@ -1,9 +1,8 @@
 """Campbell diagram: natural frequencies over speed, each mode followed, and its logarithmic decrement below."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
-from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, UNDAMPED, WARN, levels, runs, save, speed_axis
+from .canvas import Line2D, plt
+from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, UNDAMPED, WARN, levels, mark_service, runs, save, speed_axis
 
 LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4)), "either": (0, (4, 1.4, 1.2, 1.4, 1.2, 1.4))}
 EITHER = "either: equal modes, any combination of which is a mode"
@@ -133,12 +132,29 @@ def free_place(axis, modes, ends, limit, times):
     return best[0] + ends[0], best[1]
 
 
+def draw_damping(axis, modes, end, to_speed):
+    """What the panel of the decrements shows beside its lines."""
+    decrements = np.concatenate([m[3] for m in modes])
+    inside = decrements[np.isfinite(decrements)]
+    low, high = min(-0.1, inside.min() * 1.15), max(0.3, min(1.0, np.quantile(inside, 0.85)))
+    axis.axhspan(low, 0, color=BAD, alpha=0.07, linewidth=0)
+    axis.axhline(0, color=INK, linewidth=0.9)
+    axis.set_ylim(low, high)
+    axis.set_ylabel("logarithmic decrement")
+    hidden = sum(1 for m in modes if np.all(m[3] > high))
+    axis.set_title("Damping, unstable below zero" + (f"; {hidden} mode{'s are' if hidden > 1 else ' is'} damped more than shown" if hidden else ""))
+    label_modes(axis, end * to_speed, [(m[0], m[3][-1]) for m in modes if m[1][-1] == end])
+
+
 def draw(study):
     if not study.has("spectrum/speed") or len(np.unique(study.get("spectrum/speed"))) < 2:
         return []
     to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
-    figure, (top, bottom) = plt.subplots(2, 1, figsize=(8.6, 8.2), sharex=True, height_ratios=[2.2, 1])
     modes = list(modes_of(study))
+    damped_at_all = any(np.any(m[3] != 0) for m in modes)
+    figure, axes = plt.subplots(1 + damped_at_all, 1, figsize=(8.6, 8.2 if damped_at_all else 6.0), sharex=True, squeeze=False,
+                                height_ratios=[2.2, 1][:1 + damped_at_all])
+    top, bottom = axes[0, 0], axes[1, 0] if damped_at_all else None
     every, full = np.unique(study.get("spectrum/speed")), crowded_out(study)
     for mode, speed, frequency, decrement, whirl in modes:
         for a, b in stretches(speed, frequency, every, full):
@@ -146,7 +162,8 @@ def draw(study):
             at, height, damped, sense, border = with_borders(ranges, *(column[a:b] for column in (speed, frequency, decrement, whirl)))
             worst = between(at, damped, border, ranges)
             draw_lines(top, at * to_speed, height * to_frequency, damped, sense, worst)
-            draw_lines(bottom, at * to_speed, damped, damped, sense, worst)
+            if bottom:
+                draw_lines(bottom, at * to_speed, damped, damped, sense, worst)
     all_frequency = np.concatenate([m[2] for m in modes])
     ends = np.array([every[0], every[-1]])
     limit = min(all_frequency.max() * 1.06, 3 * ends[1])
@@ -186,17 +203,11 @@ def draw(study):
     if heavy.any():
         handles += [Line2D([], [], color=GREY, marker="o", markersize=4, markerfacecolor="none", linestyle="none", label="crossed, but AF < 2.5")]
 
-    decrements = np.concatenate([m[3] for m in modes])
-    inside = decrements[np.isfinite(decrements)]
-    low, high = min(-0.1, inside.min() * 1.15), max(0.3, min(1.0, np.quantile(inside, 0.85)))
-    bottom.axhspan(low, 0, color=BAD, alpha=0.07, linewidth=0)
-    bottom.axhline(0, color=INK, linewidth=0.9)
-    bottom.set_ylim(low, high)
-    bottom.set_ylabel("logarithmic decrement")
-    bottom.set_xlabel(speed_label)
-    hidden = sum(1 for m in modes if np.all(m[3] > high))
-    bottom.set_title("Damping, unstable below zero" + (f"; {hidden} modes are damped more than shown" if hidden else ""))
     label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1] and m[3][-1] <= OVERDAMPED])
-    label_modes(bottom, ends[1] * to_speed, [(m[0], m[3][-1]) for m in modes if m[1][-1] == ends[1]])
+    if bottom:
+        draw_damping(bottom, modes, ends[1], to_speed)
+    axes[-1, 0].set_xlabel(speed_label)
+    for axis in axes[:, 0]:
+        mark_service(axis, study, study.attribute("speed_unit", "rad/s"))
     words = with_either(f"numbers at the right: modes; sense of whirl by kinetic energy; {ROTATION}", [occurring])
     return save(figure, study, "campbell", words, handles, 7)

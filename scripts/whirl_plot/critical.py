@@ -1,8 +1,7 @@
 """Undamped critical speeds over the stiffness of the bearings."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .style import COLOURS, INK, save
 
 LINES = (("forward", "-"), ("backward", (0, (4, 2))))

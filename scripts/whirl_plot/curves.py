@@ -3,6 +3,7 @@ import functools
 
 import numpy as np
 
+SHARP, FAR = np.radians(100), 0.02  # turn of a picture between two stretches, and their length over that of the axes, for straight ones
 DENSE = 16  # pieces that a stretch between two points is drawn in
 
 
@@ -88,16 +89,37 @@ class Branch:
         self.s = np.concatenate([[0.0], np.cumsum(length)])
         self._own = self._prepare(self.parameter)
 
-    def _prepare(self, values):
+    def _prepare(self, values, straight=None):
+        """Values, and the slopes of the cubics at the beginning and the end of each segment; those of `straight` ones are lines."""
         values = np.asarray(values, float)
-        return values, (slopes(self.s, values) if len(values) > 1 else np.zeros_like(values))
+        if len(values) < 2:
+            return values, np.zeros(0), np.zeros(0)
+        slope = slopes(self.s, values)
+        begin, end = slope[:-1].copy(), slope[1:].copy()
+        if straight is not None and straight.any():
+            chord = np.diff(values) / np.diff(self.s)
+            begin[straight], end[straight] = chord[straight], chord[straight]
+        return values, begin, end
+
+    def straight(self, values):
+        """Segments in which too few points were computed for a curve: on both sides of a point at which the picture turns sharply between
+        points that are far apart."""
+        values, n = np.asarray(values, float), len(self.parameter)
+        if n < 3:
+            return np.ones(max(0, n - 1), bool)
+        size = np.array([np.ptp(self.parameter) or 1, max(np.ptp(values), 0.02 * np.abs(values).max()) or 1])
+        step = np.stack([np.diff(self.parameter), np.diff(values)], axis=1) / size * (1.4, 1)
+        length = np.hypot(*step.T)
+        turn = np.abs(np.angle(np.exp(1j * np.diff(np.arctan2(step[:, 1], step[:, 0])))))
+        coarse = (turn > SHARP) & (np.minimum(length[:-1], length[1:]) > FAR)
+        return np.append(coarse, False) | np.insert(coarse, 0, False)
 
     @staticmethod
     def _cubic(prepared, s, i, t):
-        values, slope = prepared
+        values, begin, end = prepared
         h = s[i + 1] - s[i]
-        return ((1 + 2 * t) * (1 - t)**2 * values[i] + t * (1 - t)**2 * h * slope[i]
-                + t**2 * (3 - 2 * t) * values[i + 1] + t**2 * (t - 1) * h * slope[i + 1])
+        return ((1 + 2 * t) * (1 - t)**2 * values[i] + t * (1 - t)**2 * h * begin[i]
+                + t**2 * (3 - 2 * t) * values[i + 1] + t**2 * (t - 1) * h * end[i])
 
     def _segments(self, prepared):
         """The cubics [segment][part] of a curve, at DENSE + 1 points of each segment."""
@@ -123,7 +145,15 @@ class Branch:
         """A curve at a place (segment, t in [0, 1]) on the branch."""
         if len(self.parameter) == 1:
             return float(values[0])
-        return float(self._cubic(self._prepare(values), self.s, place[0], place[1]))
+        i, t = place
+        if self.straight(values)[i]:
+            return float(values[i] + self._along_line(i, t) * (values[i + 1] - values[i]))
+        return float(self._cubic(self._prepare(values), self.s, i, t))
+
+    def _along_line(self, i, t):
+        """Where on the straight line of a segment the parameter is that its cubic has at t."""
+        step = self.parameter[i + 1] - self.parameter[i]
+        return float(np.clip((self._cubic(self._own, self.s, i, t) - self.parameter[i]) / step, 0, 1)) if step else t
 
     def place(self, kind, value):
         """Where on the branch a bifurcation is: (segment, t). A limit point where the branch turns nearest to `value`; others
@@ -169,8 +199,9 @@ class Branch:
         if len(self.parameter) < 2:
             return []
         stable = np.asarray(stable, bool)
-        prepared = self._prepare(values)
-        dense = self._segments(prepared)
+        straight = self.straight(values)
+        prepared, own = (self._prepare(v, straight) for v in (values, self.parameter))
+        dense, across = self._segments(prepared), self._segments(own)
         cuts = dict(changes or {})
         for place in places:
             if place is not None and stable[place[0]] != stable[place[0] + 1]:
@@ -179,10 +210,10 @@ class Branch:
 
         def add(i, a, b, solid):
             if (a, b) == (0.0, 1.0):
-                x, y = self._dense[i], dense[i]
+                x, y = across[i], dense[i]
             else:
                 t = np.linspace(a, b, DENSE + 1)
-                x, y = self._cubic(self._own, self.s, i, t), self._cubic(prepared, self.s, i, t)
+                x, y = self._cubic(own, self.s, i, t), self._cubic(prepared, self.s, i, t)
             if pieces and pieces[-1][2] == solid:
                 pieces[-1][0].append(x[1:])
                 pieces[-1][1].append(y[1:])
@@ -191,7 +222,7 @@ class Branch:
 
         for i in range(len(self.parameter) - 1):
             if i in cuts:
-                ends = [0.0, *(t for t, _ in cuts[i]), 1.0]
+                ends = [0.0, *(self._along_line(i, t) if straight[i] else t for t, _ in cuts[i]), 1.0]
                 for a, b, solid in zip(ends[:-1], ends[1:], [bool(stable[i]), *(behind for _, behind in cuts[i])]):
                     add(i, a, b, solid)
             else:

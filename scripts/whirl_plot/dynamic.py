@@ -1,8 +1,7 @@
 """Stiffness and damping of one bearing over the frequency, and where there are several speeds over the speed."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .style import INK, save
 
 PORTS = ("x", "y", "slope_x", "slope_y")

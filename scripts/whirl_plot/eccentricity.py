@@ -1,8 +1,8 @@
 """Largest eccentricity of the journal over speed, one panel per unbalance: equilibria, cycles, and those of twice the period."""
 import numpy as np
-from matplotlib.lines import Line2D
 
 from .bifurcation import Followed, legend, without_twins
+from .canvas import Line2D
 from .style import grid_of, save
 
 

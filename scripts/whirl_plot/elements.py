@@ -1,9 +1,8 @@
 """Convergence over the elements of a shaft: errors of whirl frequencies, shifts by shear, condition numbers."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
+from .canvas import Line2D, plt
 from .style import COLOURS, INK, save
 
 NUMBERS = (("condition_vectors", "-", "vectors of the modes"), ("condition_stiffness", (0, (4, 2)), "stiffness"),

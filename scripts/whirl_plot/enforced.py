@@ -1,8 +1,7 @@
 """Stiffness and damping of one bearing by enforced motion: over the amplitude, and over the frequency beside the perturbation."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .dynamic import SHORT, UNITS, blocks_of, name_of
 from .style import DASHED, INK, save
 

@@ -1,10 +1,10 @@
 """Unwrapped oil films: pressure, thickness, temperature and fill of every pad."""
-import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import GREY, length_unit, save
+from .canvas import plt
+from .style import GREY, ON_PRESSURE, PRESSURE, key, length_unit, save
 from .thd_film import Unwrapped, cavity_of
-from .thd_maps import field, hatch_cavity
+from .thd_maps import angle_ticks, field, hatch_cavity
 
 
 def pads_of(study):
@@ -25,13 +25,13 @@ def panel(figure, axis, pad, values, cmap, label, ink, jumps=False):
     if min(values.shape) > 1:
         field(figure, axis, pad, values.T, cmap, label, ink, jumps)
     else:
-        mesh = axis.pcolormesh(theta, z, values.T, cmap=cmap, shading="nearest", rasterized=True)
-        figure.colorbar(mesh, ax=axis, pad=0.015, label=label).outline.set_visible(False)
+        key(axis, axis.pcolormesh(theta, z, values.T, cmap=cmap, shading="nearest", rasterized=True), label)
+        axis.grid(False)
     hatch_cavity(axis, pad, GREY)
-    axis.grid(False)
     if len(z) > 1:
         axis.set_xlim(theta[0], theta[-1])
         axis.set_ylim(z[0], z[-1])
+    angle_ticks(axis, theta[0], theta[-1])
     axis.set_xlabel("\u03b8 [deg], from +x counter-clockwise; the shaft moves to the right \u2192", fontsize=8.5)
     axis.set_ylabel("z [mm]")
 
@@ -51,16 +51,16 @@ def draw(study):
             ruptured = ruptured or pad.cavity.any()
             theta, z = np.degrees(pad.theta), pad.z * 1e3
             left, right = axes[row][:2]
-            panel(figure, left, pad, pressure, "YlOrRd", "pressure [MPa]", "#5a1a00")
+            panel(figure, left, pad, pressure, PRESSURE, "pressure [MPa]", ON_PRESSURE)
             i, j = np.unravel_index(np.argmax(pressure), pressure.shape)
             if pressure[i, j] > 0:
                 left.plot(theta[i], z[j], "+", color="black", markersize=8)
-            left.set_title(f"{name}: pressure, largest {pressure.max():.4g} MPa at {theta[i]:.1f} deg")
+            left.set_title(f"{name}: pressure, largest {pressure.max():.4g} MPa at {theta[i] % 360:.1f} deg")
             if warm:
                 celsius = study.get(f"{path}/temperature") - 273.15
                 panel(figure, axes[row][2], pad, celsius, "inferno", "mean temperature [\u00b0C]", "white", jumps=True)
                 i, j = np.unravel_index(np.argmax(celsius), celsius.shape)
-                axes[row][2].set_title(f"{name}: temperature, highest {celsius.max():.4g} \u00b0C at {theta[i]:.1f} deg")
+                axes[row][2].set_title(f"{name}: temperature, highest {celsius.max():.4g} \u00b0C at {theta[i] % 360:.1f} deg")
             if partly:
                 # An edge holds what would enter there; what is carried past it comes from inside.
                 fill = np.where(pad.cavity.T, np.pad(fill[1:-1, 1:-1], 1, mode="edge"), fill) if pad.cavity.any() else fill
@@ -75,7 +75,7 @@ def draw(study):
             if np.ptp(thickness[i]) < 1e-9 * thickness[i, j]:  # aligned: the whole line is thinnest
                 j = len(z) // 2
             right.plot(theta[i], z[j], "+", color="white", markersize=8)
-            right.set_title(f"{name}: film thickness, smallest {thickness.min():.4g} {unit} at {theta[i]:.1f} deg")
+            right.set_title(f"{name}: film thickness, smallest {thickness.min():.4g} {unit} at {theta[i] % 360:.1f} deg")
         hatched = "; hatched: the film is ruptured, and the gap is not full" if partly else "; hatched: no pressure, the film is ruptured or its suction cut off"
         files += save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure, smallest thickness" + hatched * bool(ruptured))
     return files

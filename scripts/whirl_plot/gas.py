@@ -1,8 +1,10 @@
 """A film of gas: load, flow and losses over the eccentricity, isobars, meshes, maps of a design, rarefaction."""
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
-from .style import COLOURS, GREY, INK, save
+from .canvas import plt
+from .style import BAD, COLOURS, GREY, INK, ON_PRESSURE, PRESSURE, least_span, save
+from .thd_maps import angle_ticks
 
 CURVES = (("load", 1, "load [N]"), ("attitude", 180 / np.pi, "attitude angle [deg]"), ("normal_flow", 1, "flow [l/min, normal]"), ("power_loss", 1, "power loss [W]"),
           ("knudsen", 1, "Knudsen number"), ("factorisations", 1, "factorisations"))
@@ -21,6 +23,8 @@ def draw_curves(study):
         axis.set_ylabel(label)
         if factor == 1 and name != "factorisations":
             axis.set_ylim(bottom=0)
+        if name == "attitude":
+            least_span(axis, 1, 2)
         if name == "factorisations":
             axis.set_ylim(0, values.max() + 1)
     for axis in axes[-1]:
@@ -41,13 +45,13 @@ def draw_isobars(study):
     figure, axes = plt.subplots(len(shown), 1, figsize=(9.6, 2.9 * len(shown)), squeeze=False, sharex=True)
     levels = np.linspace(p[shown].min(), p[shown].max(), 22)
     for axis, k in zip(axes[:, 0], shown):
-        filled = axis.contourf(theta, z, p[k].T, levels, cmap="viridis")
-        lines = axis.contour(theta, z, p[k].T, levels[1:-1:2], colors="white", linewidths=0.6)
+        filled = axis.contourf(theta, z, p[k].T, levels, cmap=PRESSURE)
+        lines = axis.contour(theta, z, p[k].T, levels[1:-1:2], colors=ON_PRESSURE, linewidths=0.6)
         axis.clabel(lines, fmt="%.2f", fontsize=6.5)
         axis.set_title(f"{speeds[k]:.4g} rad/s", fontsize=9)
         axis.set_ylabel("z [mm]")
-        axis.set_xticks(np.arange(np.ceil(theta[0] / 45) * 45, theta[-1] + 1, 45))
-        figure.colorbar(filled, ax=axis, label="pressure [MPa, absolute]", pad=0.015)
+        angle_ticks(axis, theta[0], theta[-1])
+        figure.colorbar(filled, ax=axis, label="pressure [MPa, absolute]", pad=0.015, ticks=MaxNLocator(5))
     axes[-1, 0].set_xlabel(r"$\theta$ from $+x$, with the rotation [deg]")
     return save(figure, study, "gas-isobars", f"eccentricity {e[-1]:.3g} clearances; linear between nodes; the dip in the jet behind an orifice is not modelled")
 
@@ -58,11 +62,12 @@ def draw_meshes(study):
         return []
     n, rim, node = (study.get(f"meshes/{k}") for k in ("around", "load", "load_of_node_source"))
     figure, axis = plt.subplots(figsize=(7.2, 4.0))
-    axis.plot(n, rim, "-o", color=INK, markersize=4, label="pressure at the rim of the orifice")
-    axis.plot(n, node, "--s", color="#c0392b", markersize=4, label="pressure of the node: never converges")
-    axis.set_xscale("log")
-    axis.set_xticks(n, [f"{a:.0f} x {b:.0f}" for a, b in zip(n, study.get("meshes/along"))])
-    axis.minorticks_off()
+    joined = len(n) > 2  # two points are no course
+    at = np.arange(len(n))
+    axis.plot(at, rim, "-o" if joined else "o", color=INK, markersize=4, label="pressure at the rim of the orifice")
+    axis.plot(at, node, "--s" if joined else "s", color=BAD, markersize=4, label="pressure of the node: never converges")
+    axis.margins(x=0.15)
+    axis.set_xticks(at, [f"{a:.0f} x {b:.0f}" for a, b in zip(n, study.get("meshes/along"))])
     axis.set_xlabel("cells around and along")
     axis.set_ylabel("load [N]")
     return save(figure, study, "gas-meshes", handles=axis.get_legend_handles_labels()[0])
@@ -85,16 +90,27 @@ def draw_map(study):
                 handles=axes[0].get_legend_handles_labels()[0])
 
 
-def draw_knudsen(study):
-    """How thin a film must be for a Knudsen number, over the pressure, and what is the least film of this one."""
-    if not study.has("knudsen/pressure"):
-        return []
+def draw_knudsen(results):
+    """How thin a film must be for a Knudsen number, over the pressure, and the least film of each study of that gas."""
+    left = [s for s in results.studies if s.kind == "gas_bearing" and s.has("knudsen/pressure")]
+    files = []
+    while left:
+        of = left[0]
+        same = [s for s in left if all(np.array_equal(s.get(f"knudsen/{k}"), of.get(f"knudsen/{k}")) for k in ("pressure", "transition"))]
+        left = [s for s in left if s not in same]
+        files += draw_gas(results, same, "gas-knudsen" + f"-{len(files) + 1}" * bool(files))
+    return files
+
+
+def draw_gas(results, studies, what):
+    study = studies[0]
     p = 1e-6 * study.get("knudsen/pressure")
     figure, axis = plt.subplots(figsize=(7.2, 4.2))
     for (name, label), colour in zip((("slip_begins", "Kn = 0.01: slip begins to show"), ("transition", "Kn = 0.1: slip has to be counted"), ("free_molecules", "Kn = 10: free molecules")), COLOURS):
         axis.loglog(p, 1e6 * study.get(f"knudsen/{name}"), color=colour, label=label)
-    least = 1e6 * np.nanmin(study.get("curves/min_thickness"))
-    axis.axhline(least, color=GREY, linestyle="--", label=f"least film of this study, {least:.3g} µm")
+    for s, line in zip(studies, ("--", ":", "-.", "-") * len(studies)):
+        least = 1e6 * np.nanmin(s.get("curves/min_thickness"))
+        axis.axhline(least, color=GREY, linestyle=line, label=f"least film of {s.name}, {least:.3g} µm")
     axis.set_xlabel("pressure [MPa, absolute]")
     axis.set_ylabel("film thickness [µm]")
-    return save(figure, study, "gas-knudsen", "no slip is modelled", handles=axis.get_legend_handles_labels()[0], columns=2)
+    return save(figure, results.whole("rarefaction of the gas"), what, "", handles=axis.get_legend_handles_labels()[0], columns=2)

@@ -1,8 +1,7 @@
 """Shapes of torsion and of motion along the shaft."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .style import COLOURS, save
 
 SHOWN = 6

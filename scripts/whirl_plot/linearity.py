@@ -1,8 +1,7 @@
 """How linear a rotor answers random forces: transfer functions with bounds beside the linear ones, coherence, the excitation."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .style import DASHED, INK, SHADE, X, Y, length_unit, save
 
 PAIRS = ("xx", "xy", "yx", "yy")

@@ -1,8 +1,7 @@
 """Curves of bifurcations in two parameters, with their points of codimension two."""
 import numpy as np
-from matplotlib import pyplot as plt
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .curves import hermite
 from .style import GREY, INK, save
 from .units import WORDS as WORDS_OF_UNITS

@@ -1,9 +1,8 @@
 """The machine as a drawing: profile of the shaft, added masses, bearings, couplings, planes of unbalance."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 
+from .canvas import Line2D, plt
 from .style import BAD, COLOURS, GREY, INK, save, span_of
 from .units import number, quantity
 
@@ -44,7 +43,7 @@ def draw_bearings(axis, deck, place, low, high):
         length, radius = number(geometry.get("length")) or 0, number(geometry.get("radius")) or 0
         if length and radius:
             for side in (1, -1):
-                axis.add_patch(Rectangle((at - length / 2, side * radius if side > 0 else -radius - 0.12 * high), length, 0.12 * high,
+                axis.add_artist(Rectangle((at - length / 2, side * radius if side > 0 else -radius - 0.12 * high), length, 0.12 * high,
                                          facecolor=COLOURS[1], edgecolor="none", zorder=4))
         axis.plot(at, low, marker="^", color=COLOURS[1], markersize=9, zorder=4)
         axis.plot([at, at], [low, -radius], color=COLOURS[1], linewidth=0.8, zorder=1)
@@ -97,14 +96,14 @@ def right_radius(segment, key, left):
 
 def outline(axis, a, b, left, right, **how):
     """A segment from z = a to b with these radii at its ends."""
-    axis.add_patch(Polygon([(a, -left), (b, -right), (b, right), (a, left)], closed=True, **how))
+    axis.add_artist(Polygon([(a, -left), (b, -right), (b, right), (a, left)], closed=True, **how))
 
 
 def draw_coupling(axis, a, b, radius):
     """Two halves with a gap between them, joined by a spring."""
     gap = (b - a) / 6
     for left, right in ((a, (a + b) / 2 - gap), ((a + b) / 2 + gap, b)):
-        axis.add_patch(Rectangle((left, -radius), right - left, 2 * radius, facecolor=STEEL, edgecolor=GREY, linewidth=0.6, zorder=2))
+        axis.add_artist(Rectangle((left, -radius), right - left, 2 * radius, facecolor=STEEL, edgecolor=GREY, linewidth=0.6, zorder=2))
     z = np.linspace((a + b) / 2 - gap, (a + b) / 2 + gap, 9)
     for side in (-0.6, 0.6):
         axis.plot(z, side * radius + 0.2 * radius * np.array([0, 0, 1, -1, 1, -1, 1, 0, 0]), color=COLOURS[0], linewidth=0.8, zorder=3)
@@ -130,14 +129,14 @@ def draw_shaft(results, deck, segments):
             draw_coupling(axis, a, b, r)
             continue
         if m > r:
-            axis.add_patch(Rectangle((a, -m), b - a, 2 * m, facecolor=ADDED, edgecolor="none", zorder=1))
+            axis.add_artist(Rectangle((a, -m), b - a, 2 * m, facecolor=ADDED, edgecolor="none", zorder=1))
         outline(axis, a, b, r, end, facecolor=STEEL, edgecolor=GREY, linewidth=0.3, zorder=2)
         if inner or bore:
             outline(axis, a, b, inner, bore, facecolor="white", edgecolor=GREY, linewidth=0.3, zorder=3)
     for node, radius, thickness, _, offset in discs:
         if 1 <= node <= len(z):
             at, thickness = z[node - 1] + offset, thickness or 0.012 * z[-1]
-            axis.add_patch(Rectangle((at - thickness / 2, -radius), thickness, 2 * radius, facecolor=ADDED, edgecolor=GREY, linewidth=0.4, zorder=2.5))
+            axis.add_artist(Rectangle((at - thickness / 2, -radius), thickness, 2 * radius, facecolor=ADDED, edgecolor=GREY, linewidth=0.4, zorder=2.5))
     axis.plot([z[0], z[-1]], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)), zorder=5)
     place = lambda node: z[node - 1] if isinstance(node, int) and 1 <= node <= len(z) else None  # noqa: E731
     draw_bearings(axis, deck, place, -1.45 * high, high)
@@ -185,8 +184,8 @@ def draw_rigid(results, deck, rotor):
     """A rigid rotor has no profile: its mass between its bearings, which all move alike."""
     bearings = deck.get("bearings") or {}
     figure, axis = plt.subplots(figsize=(7.2, 3.0))
-    axis.add_patch(Rectangle((-2, -0.12), 4, 0.24, facecolor=STEEL, edgecolor=GREY, linewidth=0.5))
-    axis.add_patch(Rectangle((-0.5, -0.7), 1.0, 1.4, facecolor=STEEL, edgecolor=GREY, linewidth=0.8))
+    axis.add_artist(Rectangle((-2, -0.12), 4, 0.24, facecolor=STEEL, edgecolor=GREY, linewidth=0.5))
+    axis.add_artist(Rectangle((-0.5, -0.7), 1.0, 1.4, facecolor=STEEL, edgecolor=GREY, linewidth=0.8))
     axis.annotate(f"mass {quantity(rotor.get('mass', ''))}", (0, 0.1), ha="center", va="center", fontsize=9)
     if number(rotor.get("load")):
         axis.annotate("", (0, -1.25), (0, -0.7), arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.2})
@@ -194,7 +193,7 @@ def draw_rigid(results, deck, rotor):
     places = np.linspace(-1.6, 1.6, len(bearings)) if len(bearings) > 1 else [1.6] * len(bearings)
     for at, name in zip(places, bearings):
         for side in (1, -1):
-            axis.add_patch(Rectangle((at - 0.25, 0.16 if side > 0 else -0.3), 0.5, 0.14, facecolor=COLOURS[1], edgecolor="none"))
+            axis.add_artist(Rectangle((at - 0.25, 0.16 if side > 0 else -0.3), 0.5, 0.14, facecolor=COLOURS[1], edgecolor="none"))
         axis.plot(at, -0.55, marker="^", color=COLOURS[1], markersize=10)
         axis.annotate(name, (at, -0.7), ha="center", va="top", fontsize=9)
     axis.plot([-2.2, 2.2], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)))

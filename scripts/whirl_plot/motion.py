@@ -1,8 +1,8 @@
 """A motion in time on one page: orbit in the clearance, Poincare points, spectrum, convergence of the Lyapunov exponents."""
-import matplotlib.pyplot as plt
 import numpy as np
 
 from .bore import draw_clearance
+from .canvas import plt
 from .orbits import finish, square, turn_arrow
 from .style import GREY, INK, ROTATION, X, Y, save
 from .units import digits, with_bar
@@ -70,6 +70,9 @@ def draw_exponents(axis, running, speed, value, uncertainty):
 def draw(study):
     if not study.has("orbit/x", "poincare/x", "spectrum/x"):
         return []
+    first, later = twins(study)
+    if first is not None:
+        return []  # its picture names this one
     scale, unit = study.micro
     # A motion that nothing forces has a section in place of a shaft angle.
     cut = "section" if study.has("section/x", "section/y") else "poincare"
@@ -96,13 +99,71 @@ def draw(study):
             row[3].set_visible(False)
     turns = int(round(x.shape[0] / study.attribute("samples", 1)))
     mark = "shaft angle 0" if cut == "poincare" else str(study.group["section"].attrs["plane"])
-    return save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, black: {mark}; {ROTATION}")
+    return save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, black: {mark}; {ROTATION}" + also(later))
+
+
+def same(one, other):
+    """Whether two motions are the same at every sample, to a thousandth of their size."""
+    if any(one.attribute(k) != other.attribute(k) for k in ("speed", "samples", "unbalance")) or not (one.has("orbit/x", "orbit/y") and other.has("orbit/x", "orbit/y")):
+        return False
+    for d in "xy":
+        a, b = one.get(f"orbit/{d}"), other.get(f"orbit/{d}")
+        if a.shape != b.shape or np.abs(a - b).max() > 1e-3 * np.ptp(a, axis=0).max():
+            return False
+    return True
+
+
+def also(later):
+    return f"; the same to a thousandth: {', '.join(later)}" if later else ""
+
+
+def twins(study):
+    """(the first motion of the run that is the same as this one or None, the later ones that are the same)."""
+    motions = [s for s in study.results.studies if s.kind == "motion"]
+    at = next((k for k, s in enumerate(motions) if s.name == study.name), None)
+    if at is None:
+        return None, []
+    first = next((s for s in motions[:at] if same(s, study)), None)
+    return first, [] if first is not None else [s.name for s in motions[at + 1:] if same(study, s)]
+
+
+LATEST = 24  # revolutions of a history: more are a band
+
+
+def draw_history(study):
+    """x and y over the time, the latest revolutions; black: once per revolution."""
+    if not study.has("orbit/x", "orbit/y") or study.attribute("motion", "") == "fixed_point":
+        return []
+    scale, unit = study.micro
+    samples = int(round(study.attribute("samples", 0)))
+    first, later = twins(study)
+    if samples < 2 or first is not None:
+        return []
+    x, y = (study.get(f"orbit/{d}")[-LATEST * samples:] * scale for d in "xy")
+    names = study.bearings(x.shape[1])
+    rows = distinct(study, names)
+    turns = np.arange(1 - len(x), 1) / samples
+    figure, axes = plt.subplots(2 * len(rows), 1, figsize=(9.6, 2.6 * len(rows) + 1.0), squeeze=False, sharex=True)
+    for pair, b in zip(axes.reshape(-1, 2), rows):
+        for axis, values, colour, letter in zip(pair, (y, x), (Y, X), "yx"):
+            axis.plot(turns, values[:, b], color=colour, linewidth=0.9)
+            if not study.has("section/x"):
+                axis.plot(turns[::-samples], values[::-samples, b], ".", color=INK, markersize=3.5)
+            axis.set_ylabel(letter if unit == "1" else f"{letter} [{unit}]")
+            axis.margins(x=0.005)
+        pair[0].set_title(names[b])
+    axes[-1, 0].set_xlabel("periods before the end" if study.has("places/name") else "revolutions before the end")
+    note = "" if study.has("section/x") else "black: once per revolution, at shaft angle 0"
+    return save(figure, study, "history", (note + also(later)).removeprefix("; "))
 
 
 def draw_full_spectrum(study, top=4.0):
     """The circles that the orbits are made of, over the frequency with its sign: forward to the right, backward to the left."""
     if not study.has("full_spectrum/order", "full_spectrum/amplitude") or study.attribute("motion", "") == "fixed_point":
         return []
+    first, later = twins(study)
+    if study.has("places/name") or first is not None:
+        return []  # what is no rotor does not whirl
     scale, unit = study.micro
     order, amplitude = study.get("full_spectrum/order"), study.get("full_spectrum/amplitude") * scale
     names = study.bearings(amplitude.shape[1])
@@ -117,4 +178,4 @@ def draw_full_spectrum(study, top=4.0):
         axis.set_title(names[b])
     axes[-1, 0].set_xlim(-top, top)
     axes[-1, 0].set_xlabel("frequency / running speed; backward whirl below zero")
-    return save(figure, study, "full-spectrum", f"circles of z = x + i y; {ROTATION}")
+    return save(figure, study, "full-spectrum", f"circles of z = x + i y; {ROTATION}" + also(later))

@@ -1,10 +1,9 @@
 """Journals inside their clearance: orbits of cycles, loci of equilibria, static positions."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
 from .bifurcation import Followed, legend
 from .bore import distance_in_words, draw_clearance
+from .canvas import Line2D, plt
 from .curves import periodic
 from .style import DASHED, GREY, INK, ROTATION, Y, mark, mark_end, parameter_label, save
 from .units import person
@@ -56,6 +55,15 @@ def along_branch(study, orbits):
     return np.cumsum(np.abs(step))[[o.point for o in orbits]]
 
 
+def colours_of(orbits):
+    """A colour for each orbit, and what it means: the parameter, or the way along a branch that turns, where a parameter comes again."""
+    values = np.array([o.parameter for o in orbits], float)
+    steps = np.diff(values)
+    if len(values) > 1 and (np.all(steps > 0) or np.all(steps < 0)):
+        return plt.cm.viridis(0.9 * (values - values.min()) / np.ptp(values)), True
+    return plt.cm.viridis(np.linspace(0, 0.9, len(orbits))), False
+
+
 def draw(study, shown=9):
     orbits = study.orbits
     if not orbits:
@@ -70,7 +78,7 @@ def draw(study, shown=9):
     known = study.has("bearings/clearance") or study.has("bearings/outline_x")
     rows = 2 if known else 1
     figure, axes = row_of_panels(rows, len(names))
-    colours = plt.cm.viridis(np.linspace(0, 0.95, len(orbits)))
+    colours, by_parameter = colours_of(orbits)
     for b, name in enumerate(names):
         every = [np.concatenate([s[d][:, b] for s in smooth]) for d in (0, 1)]
         if known:
@@ -90,7 +98,8 @@ def draw(study, shown=9):
                       label=f"{o.parameter:.5g}{given}" + (", unstable" if s is False else "")) for o, c, s in zip(orbits, colours, stable)]
     first = "above in the clearance, pads thick, no wall where dotted; below enlarged; " if known else ""
     moment = "shaft angle 0" if study.attribute("unbalance", "") else "the phase chosen as zero"
-    note = f"{first}colours: {words}; dashed: unstable; dot: {moment}; {study.shown}"
+    meaning = words if by_parameter else "way along the branch, which turns"
+    note = f"{first}colours: {meaning}; dashed: unstable; dot: {moment}; {study.shown}"
     return save(figure, study, "orbits", f"{note}; {ROTATION}" if known and len(names) > 2 else note, handles, 5)
 
 
@@ -105,23 +114,31 @@ def draw_harmonics(study, highest=20):
     stable = stability(study, [orbits[k] for k in pick])
     names = orbits[0].places
     figure, axes = plt.subplots(1, len(names), figsize=(max(5.8, 2.6 * len(names)), 3.2), squeeze=False, sharey=True)
-    colours, handles = plt.cm.viridis(np.linspace(0.1, 0.85, len(pick))), []
+    colours, handles, stems = plt.cm.viridis(np.linspace(0.1, 0.85, len(pick))), [], []
     given = "" if study.attribute("parameter_unit", "1") == "1" else " " + study.attribute("parameter_unit")
-    top = 0.0
-    for k, colour, steady in zip(pick, colours, stable):
+    top, width = 0.0, 0.6 / len(pick)
+    for place, (k, colour, steady) in enumerate(zip(pick, colours, stable)):
         o, hertz = orbits[k], 1 / period[orbits[k].point]
         parts = np.fft.fft((o.x + 1j * o.y) * scale, axis=0) / len(o.x)
         order = np.arange(1, min(highest, (len(o.x) - 1) // 2) + 1)
         half_axis = np.abs(parts[order]) + np.abs(parts[-order])
         top = max(top, half_axis.max())
-        for b, axis in enumerate(axes[0]):
-            axis.plot(order * hertz, half_axis[:, b], "-o" if steady is not False else "--o", color=colour, markersize=3, linewidth=0.8)
-        handles.append(Line2D([], [], color=colour, marker="o", markersize=3, linewidth=0.8, linestyle=DASHED if steady is False else "-",
+        stems.append((order + (place - (len(pick) - 1) / 2) * width, half_axis, colour, steady))
+        handles.append(Line2D([], [], color=colour, marker="o", markersize=3, linewidth=1.2, linestyle=DASHED if steady is False else "-",
                               label=f"{o.parameter:.5g}{given}, whirl {hertz:.4g} Hz" + (", unstable" if steady is False else "")))
+    low = 1e-5 * top
+    last = max(int(np.flatnonzero((half_axis > low).any(axis=1)).max(initial=0)) + 1 for _, half_axis, _, _ in stems)
+    for at, half_axis, colour, steady in stems:
+        for b, axis in enumerate(axes[0]):
+            seen = half_axis[:, b] > low
+            axis.vlines(at[seen], low, half_axis[seen, b], color=colour, linewidth=1.2, linestyle=DASHED if steady is False else "-")
+            axis.plot(at[seen], half_axis[seen, b], "o", color=colour, markersize=3)
     for axis, name in zip(axes[0], names):
         axis.set_yscale("log")
-        axis.set_ylim(1e-5 * top, 2 * top)
-        axis.set_xlabel("frequency [Hz]")
+        axis.set_ylim(low, 2 * top)
+        axis.set_xlim(0.5, last + 0.5)
+        axis.set_xticks(np.arange(1, last + 1, -(-last // 8)))
+        axis.set_xlabel("harmonic of the whirl")
         axis.set_title(name)
     axes[0, 0].set_ylabel(f"larger half-axis [{unit}]")
     return save(figure, study, "harmonics", f"harmonics of the whirl of each cycle, the larger half-axis of the ellipse of each (0-peak); {study.shown}", handles, 3)
@@ -132,6 +149,10 @@ def draw_locus(study):
         return []
     branch = Followed(study)
     x, y = (branch.column(k) * 1e6 for k in "xy")
+    # A path that stays where it is would be one dot.
+    clearance = study.get("bearings/clearance", np.zeros(1))
+    if max(np.ptp(x, axis=0).max(), np.ptp(y, axis=0).max()) <= 1e-4 * max(np.abs(x).max(), np.abs(y).max(), 1e6 * np.max(clearance)):
+        return []
     names = study.bearings(x.shape[1])
     figure, axes = row_of_panels(1, len(names))
     parameter = branch.parameter
@@ -171,5 +192,5 @@ def draw_positions(study):
             lines += distance_in_words(study, b, x[b], y[b])
         finish(axis, name if load is None else f"{name}: {person(np.atleast_1d(load)[b], 'N', 4)}")
         axis.set_xlabel(f"x [\u00b5m]\n{lines}", fontsize=8)
-    return save(figure, study, "journals", "pads thick, no wall where dotted; journal relative to the bearing centre; $c_b$ assembled clearance; "
+    return save(figure, study, "journals", "pads thick, no wall where dotted; journal relative to the bearing centre; c: assembled clearance; "
                 f"load of the journal on the bearing, positive down; {ROTATION}")

@@ -1,9 +1,8 @@
 """Spectra over the course of a motion or a run-up: waterfalls, and amplitude and phase of orders of the speed."""
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .style import COLOURS, GREY, INK, ROTATION, save, span_of, speed_axis
 from .units import scale_of
 

@@ -1,9 +1,8 @@
 """What reductions of a shaft cost: errors over the number of freedoms, orbits beside those of the whole shaft, matrices."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from .canvas import Line2D, plt
 from .style import COLOURS, GREY, INK, save
 
 WORDS = {"modal_supported": "modes on springs", "modal_free": "modes of the free shaft", "craig_bampton": "Craig-Bampton", "craig_bampton_state": "Craig-Bampton, state space"}

@@ -1,12 +1,10 @@
 """Unbalance response: amplitude and phase over speed (Bode)."""
-import matplotlib.pyplot as plt
 import numpy as np
 
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-
+from .canvas import Line2D, plt
 from .margins import operating_in
-from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, runs, save, span_of, speed_axis
+from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, mark_service, runs, save, span_of, speed_axis
+from .units import person
 
 NOTE = ("linear response, amplitudes 0-peak; lag behind the shaft angle: x = |X| cos(angle \u2212 lag), the heavy side points along x "
         "at angle 0 and phase 0")
@@ -83,7 +81,7 @@ def draw_place(study, amplitude_axis, phase_axis, x, data, k, scale, unit, speed
         top, p = max(known, key=lambda entry: (is_answer(entry[1]), entry[0]))
         factor = number(p, "amplification_factor")
         # Above the axes it covers nothing.
-        title += f"\n{top * scale:.3g} {unit} at {number(p, 'speed'):.0f} {speed_unit}" + (f", AF {factor:.1f}" if factor is not None else "")
+        title += f"\n{person(top, 'm', 3)} at {number(p, 'speed'):.0f} {speed_unit}" + (f", AF {factor:.1f}" if factor is not None else "")
         if not is_answer(p):
             title += ", unstable" if p.get("stability") == "unstable" else ", no answer" if any(str(n).startswith("no answer") for n in p.get("notes", [])) else ", undetermined"
     highest = np.nanmax(major) if np.isfinite(major).any() else 0
@@ -110,6 +108,7 @@ def draw_group(study, group, names, what, speed, speed_label):
         return []
     data = {k: study.get(f"{group}/{k}").reshape(len(speed), -1) for k in keys}
     scale, unit = length_unit(data["semi_major"])
+    from matplotlib.patches import Patch
     files, count = [], data["semi_major"].shape[1]
     operating, validity = operating_in(study), Validity(study, len(speed))
     for count_of_files, part in enumerate(np.array_split(np.arange(count), -(-count // 5)), 1):
@@ -121,6 +120,8 @@ def draw_group(study, group, names, what, speed, speed_label):
             axes[1, column].set_xlim(*span_of(speed[0], speed[-1]))
         for axis in axes.ravel():
             draw_operating(axis, operating, speed)
+            if operating is None:
+                mark_service(axis, study, study.attribute("speed_unit", "rad/s"))
             validity.shade(axis, speed)
         if group == "bearings" and validity.answer.any():
             axes[0, 0].set_ylim(0, 1.08 * scale * data["semi_major"][validity.answer][:, list(part)].max())

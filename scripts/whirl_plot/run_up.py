@@ -1,8 +1,8 @@
 """Amplitude over speed on the way up and down, the run-ups of a run together; linear steady response of the same nodes beside it."""
 import numpy as np
-from matplotlib.lines import Line2D
 
-from .style import GREY, grid_of, length_unit, save, span_of
+from .canvas import Line2D
+from .style import GREY, grid_of, length_unit, mark_service, save, span_of
 
 RESPONSE_COLUMN = {"bearings": "bearings/semi_major", "node": "response/semi_major"}
 
@@ -69,6 +69,7 @@ def draw_together(results):
         ends = np.concatenate([study.get("run_up/speed") for study in studies])
         axis.set_xlim(*span_of(ends.min(), ends.max()))
         axis.set_ylim(bottom=0)
+        mark_service(axis, studies[0], unit)
         axis.set_title(title)
         axis.set_xlabel(f"speed [{unit}]")
         axis.set_ylabel(f"amplitude, 0-peak [{length}]")

@@ -1,10 +1,10 @@
 """Sag line of the shaft and mode shapes along it, flat and in space."""
 import typing
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 from .campbell import LINES, OVERDAMPED, with_either
+from .canvas import Line2D, plt
 from .curves import along_shaft
 from .style import BAD, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, least_span, length_unit, save, span_of, speed_axis
 
@@ -52,10 +52,19 @@ def mark_couplings(axis, places, names=True):
                           va="bottom", fontsize=7, color=GREY)
 
 
+def is_straight(z, values):
+    """Whether a line along the shaft is straight but for rounding."""
+    if len(z) < 3 or not np.ptp(z):
+        return True
+    return np.abs(values - np.polyval(np.polyfit(z, values, 1), z)).max() <= max(1e-9 * np.abs(values).max(), 1e-13)
+
+
 def draw_sag(study):
     if not study.has("nodes/z", "nodes/y"):
         return []
     z, x, y = study.get("nodes/z"), study.get("nodes/x", None), study.get("nodes/y")
+    if is_straight(z, y) and (x is None or is_straight(z, x)) and study.get("nodes/moment") is None:
+        return []  # a rigid rotor does not sag
     bearings, couplings = bearing_places(study, z), coupling_places(study, z)
     rows = [("y, vertical", y, along_shaft(z, y, study.get("nodes/slope_y")), Y)]
     if x is not None:
@@ -212,17 +221,19 @@ def draw_in_space(study, speed, z, shapes, suffix):
         axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8, y=0.98)
         axis.set_box_aspect((3.0, 1, 1), zoom=1.3)
         axis.view_init(18, -62)
-        axis.set(xlim=span_of(z[0], z[-1]), ylim=(-1, 1), zlim=(-1, 1), yticks=[], zticks=[])
-        axis.tick_params(axis="x", labelsize=6.5, pad=-3)
+        axis.set(xlim=span_of(z[0], z[-1]), ylim=(-1, 1), zlim=(-1, 1), yticks=[-1, 0, 1], zticks=[-1, 0, 1])
+        axis.tick_params(labelsize=6, pad=-3)
+        axis.set_xlabel("z [m]", fontsize=7, labelpad=-6)
+        axis.set_ylabel("x [-]", fontsize=7, labelpad=-10)
+        axis.set_zlabel("y [-]", fontsize=7, labelpad=-10)
         axis.grid(False)
         for pane in (axis.xaxis, axis.yaxis, axis.zaxis):
             pane.pane.set_edgecolor(LIGHT)
             pane.pane.set_facecolor("white")
-    from matplotlib.lines import Line2D
     handles = [Line2D([], [], color=INK, label="shaft at one moment"),
                Line2D([], [], color=GREY, linestyle=LINES["forward"], linewidth=0.8, label="orbit, forward"),
                Line2D([], [], color=GREY, linestyle=LINES["backward"], linewidth=0.8, label="orbit, backward"),
                Line2D([], [], color=BAD, marker="o", linestyle="none", markersize=4, label="node: crosses the axis"),
                Line2D([], [], color=GREY, linestyle=(0, (2, 2)), linewidth=0.8, label="bearing")]
-    words = with_either(f"{at}; along z [m], x to the back, y up; each scaled to its largest excursion", [[s.whirl for s in shapes]])
+    words = with_either(f"{at}; x to the back, y up; each scaled to its largest excursion", [[s.whirl for s in shapes]])
     return save(figure, study, f"shapes-3d{suffix}", words, handles)

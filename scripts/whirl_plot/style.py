@@ -3,19 +3,11 @@ import io
 import re
 import textwrap
 
-import matplotlib
+import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from PIL import Image  # noqa: E402
-from cycler import cycler  # noqa: E402
-from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402
-from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
-from matplotlib.lines import Line2D  # noqa: E402
-
-from .manifest import register  # noqa: E402
-from .ticks import remembered  # noqa: E402
+from .canvas import Line2D, plt
+from .manifest import register
+from .ticks import remembered, settled
 
 INK, GREY, LIGHT = "#222222", "#7a7a7a", "#d9d9d9"
 # Each colour means one thing: the two directions, the studies of a run, damping and stability; over a parameter, viridis.
@@ -25,9 +17,10 @@ COLOURS = ["#7b3fa0", "#12868f", "#8a5a2b", "#c2477f", "#7d8a1f", "#4a5a78", "#a
 GOOD, WARN, BAD = "#2a8c55", "#e69f00", "#c8102e"
 UNDAMPED = "#3b6fb6"  # neither stable nor unstable
 SHADE = "#f3f6f9"
+PRESSURE, ON_PRESSURE = "YlOrRd", "#5a1a00"  # the colours of a pressure, and of lines on them
 DASHED = (0, (3.2, 1.8))
 ROTATION = "rotation x \u2192 y, counter-clockwise with x right and y up"
-formats = ["png", "svg"]  # of the pictures, set by use_style
+formats = ["png"]  # of the pictures, set by use_style
 
 # Label, marker and meaning of each bifurcation.
 MARKS = {
@@ -40,19 +33,9 @@ MARKS = {
 }
 
 
-def use_style(kinds=("png", "svg")):
+def use_style(kinds=("png",)):
+    """The formats of the pictures from now on."""
     formats[:] = kinds
-    plt.rcParams.update({
-        "figure.dpi": 110, "savefig.dpi": 170, "figure.constrained_layout.use": True,
-        "font.size": 9.5, "axes.titlesize": 10, "axes.titleweight": "bold", "axes.titlelocation": "left",
-        "axes.labelsize": 9.5, "axes.labelcolor": INK, "axes.edgecolor": GREY, "axes.linewidth": 0.8,
-        "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
-        "grid.color": LIGHT, "grid.linewidth": 0.5, "xtick.color": INK, "ytick.color": INK,
-        "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "legend.fontsize": 8.5, "legend.frameon": False,
-        "lines.linewidth": 1.6, "lines.solid_capstyle": "round", "axes.prop_cycle": cycler(color=COLOURS),
-        # Texts stay texts and equal pictures equal files.
-        "svg.fonttype": "none", "svg.hashsalt": "whirl", "path.simplify": True, "path.simplify_threshold": 0.15,
-    })
 
 
 def length_unit(values):
@@ -82,6 +65,29 @@ def least_span(axis, reference, share=0.02):
     if high - low < wanted:
         axis.set_ylim((low + high - wanted) / 2, (low + high + wanted) / 2)
         axis.ticklabel_format(axis="y", useOffset=False)
+
+
+def service_speed_of(subject):
+    """The service speed that the deck states, in rad/s; None if it states none."""
+    service = subject.results.summary.get("service_speed")
+    value, unit = (service.get("value"), service.get("unit")) if isinstance(service, dict) else (None, "")
+    factor = {"rpm": np.pi / 30, "Hz": 2 * np.pi, "rad/s": 1}.get(unit)
+    return value * factor if factor and isinstance(value, (int, float)) else None
+
+
+def mark_service(axis, subject, unit):
+    """A line at the service speed, where it lies on an axis of speeds in `unit`."""
+    speed = service_speed_of(subject)
+    factor = {"rpm": 30 / np.pi, "Hz": 0.5 / np.pi, "rad/s": 1}.get(unit)
+    if speed is None or factor is None:
+        return
+    low, high = axis.get_xlim()
+    at = speed * factor
+    if low <= at <= high:
+        axis.axvline(at, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), zorder=0.6)
+        right = at < low + 0.1 * (high - low)
+        axis.annotate("service speed", (at, 1), xycoords=axis.get_xaxis_transform(), xytext=(2 if right else -2, -2), textcoords="offset points", rotation=90,
+                      ha="left" if right else "right", va="top", fontsize=6.5, color=GREY, zorder=0.7)
 
 
 def parameter_label(study):
@@ -143,15 +149,16 @@ def save(figure, study, what, note="", handles=(), columns=6, of=""):
 
 
 def write(figure, stem):
-    """The figure as `stem`.png of 256 colours, a third of the size of one of all (lines on white need no more), and as
-    `stem`.svg. Each is named in the run's manifest before it is written. Returns their paths.
+    """The figure as `stem`.png, `stem`.svg or `stem`.pdf, as was asked. A PNG of lines on white has 256 colours, which is a third of the
+    size of one of all; one of fields has all. Each is named in the run's manifest before it is written. Returns their paths.
 
     The layout is computed once, for all formats. Figure.savefig would compute it for each, and walk through all artists once more."""
     files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
     figure.set_facecolor("white")
     with remembered() as forget:
         figure.set_dpi(plt.rcParams["savefig.dpi"])
-        figure.get_layout_engine().execute(figure)
+        with settled():
+            figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")
         for path in files:
             figure.set_dpi(plt.rcParams["savefig.dpi"])  # an SVG leaves its own
@@ -161,12 +168,27 @@ def write(figure, stem):
 
 
 def print_png(figure, path):
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
-    few_colours(np.asarray(canvas.buffer_rgba())).save(path, format="PNG")
+    pixels = np.asarray(canvas.buffer_rgba())
+    (all_colours(pixels) if has_field(figure) else few_colours(pixels)).save(path, format="PNG", compress_level=4)
+
+
+def has_field(figure):
+    """Whether colours of a figure run into each other: 256 of them would show as steps."""
+    from matplotlib.collections import QuadMesh
+    from matplotlib.image import AxesImage
+    return any(isinstance(artist, (QuadMesh, AxesImage)) and artist.axes.get_label() != "<colorbar>" for axis in figure.axes for artist in axis.get_children())
+
+
+def all_colours(pixels):
+    from PIL import Image
+    return Image.fromarray(np.ascontiguousarray(pixels[..., :3]))
 
 
 def print_svg(figure, path):
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
     figure.set_dpi(90)  # of what is no line: the coloured fields
     text = io.StringIO()
     FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
@@ -207,6 +229,7 @@ def few_colours(pixels):
         closer = square < least
         nearest[closer], least[closer] = len(palette), square[closer]
         palette.append(one)
+    from PIL import Image
     few = Image.fromarray(np.repeat(nearest[place], lengths).reshape(pixels.shape[:2]), mode="P")
     few.putpalette(colours[palette].astype(np.uint8).tobytes())
     return few
@@ -236,6 +259,31 @@ def mark(axis, kind, x, y, size=6):
     marker = MARKS.get(kind, (kind, "x", kind))[1]
     axis.plot([x], [y], marker=marker, color=INK, markersize=size, markeredgecolor="white", markeredgewidth=0.8,
               linestyle="none", zorder=6)
+
+
+def key(axis, field, label, width=0.03, away=0.02):
+    """The colours of a field beside its axes, with round numbers; a colour bar of matplotlib would be one more pair of axes, which takes as
+    long to draw as the field itself."""
+    from matplotlib.image import AxesImage
+    from matplotlib.ticker import MaxNLocator
+    low, high = field.get_clim()
+    bar = AxesImage(axis, cmap=field.get_cmap(), extent=(1 + away, 1 + away + width, 0, 1), origin="lower", transform=axis.transAxes, clip_on=False, zorder=2)
+    bar.set_data(np.linspace(low, high, 256)[:, None])
+    bar.set_clim(low, high)
+    bar.set_label("key")
+    bar.set_in_layout(False)  # its extent would be taken for one in data; the numbers are farther out
+    axis.add_artist(bar)
+    bar.set_clip_path(None)
+    ticks = MaxNLocator(5).tick_values(low, high)
+    ticks = ticks[(ticks >= low) & (ticks <= high)] if high > low else np.array([low])
+    step = np.ptp(ticks[:2]) or abs(low) or 1
+    places = min(12, max(0, -int(np.floor(np.log10(step) + 1e-9))))
+    for at in ticks:
+        height = (at - low) / (high - low) if high > low else 0.5
+        axis.text(1 + away + 1.25 * width, height, f"{at:.{places}f}".replace("-", "\u2212"), transform=axis.transAxes, fontsize=8, va="center", color=INK)
+    long = max(len(f"{at:.{places}f}") for at in ticks)
+    axis.annotate(label, (1 + away + 1.25 * width, 0.5), xycoords=axis.transAxes, xytext=(5.6 * long + 4, 0), textcoords="offset points", rotation=90, va="center",
+                  fontsize=9, color=INK)
 
 
 def mark_end(axis, x, y, size=6):

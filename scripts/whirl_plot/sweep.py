@@ -1,8 +1,8 @@
 """Sweeps: what was asked of all variants on one picture, and values over what changes."""
 import numpy as np
-from matplotlib.lines import Line2D
 
 from .bifurcation import Followed
+from .canvas import Line2D, plt
 from .curves import through
 from .style import COLOURS, DASHED, GREY, INK, MARKS, branch_legend, grid_of, length_unit, save, speed_axis
 from .units import WORDS, scale_of
@@ -28,8 +28,22 @@ def variants(study):
     given = {s.name: s for s in study.results.studies if s.name in asked}
     if given:
         found.insert(0, (as_given(study), given))
-    colours = [INK] + COLOURS if given else COLOURS
-    return [(name, colours[i % len(colours)], members) for i, (name, members) in enumerate(found)]
+    named = [name for name, _ in found[bool(given):]]
+    colours = ([INK] if given else []) + colours_of(study, named)
+    return [(name, colour, members) for (name, members), colour in zip(found, colours)]
+
+
+def colours_of(study, names):
+    """Of a quantity that is ordered, over a scale from dark to bright; of a few others each its own."""
+    where = axis_of(study)
+    rows = study.get("table/variant") if where is not None and study.has("table/variant") else None
+    place = {} if rows is None else {str(n): float(v) for n, v in zip(rows, where[1]) if np.isfinite(v)}
+    at = np.array([place.get(n, np.nan) for n in names])
+    if len(names) > 2 and np.all(np.isfinite(at)) and len(np.unique(at)) == len(at):
+        if at.min() > 0 and at.max() / at.min() > 20:
+            at = np.log(at)
+        return list(plt.cm.viridis(0.9 * (at - at.min()) / np.ptp(at)))
+    return COLOURS[:len(names)] if len(names) <= len(COLOURS) else list(plt.cm.viridis(np.linspace(0, 0.9, len(names))))
 
 
 def as_given(study):
@@ -240,11 +254,42 @@ def axis_of(study):
     at = study.get("table/" + name.replace("/", "_"))
     short = name.split(".")[-1] if name != "at" else study.name
     short = short.replace("_", " ")
+    if unit == "1" and any(str(v.get("changes", {}).get(name, "")).startswith("x") for v in study.summary.get("variants", [])):
+        short += ", factor on the deck's value"
     return None if at is None else (short + (f" [{WORDS.get(unit, unit)}]" if unit != "1" else ""), at)
 
 
+ALIKE = 0.2  # largest relative difference of the whirl frequencies of what a line joins
+
+
+def events_of(study, head, kind, names):
+    """Of each row of the table the bifurcations of a kind of the study `head`, in their order along the branch."""
+    entries = {v["name"]: {s["name"]: s for s in v.get("studies", [])} for v in study.summary.get("variants", [])}
+    own = {s.name: s.summary for s in study.results.studies}
+    rows = [entries.get(n, own if n not in entries else {}).get(head, {}).get("bifurcations", []) for n in names]
+    return [[b for b in row if b.get("type") == kind] for row in rows]
+
+
+def pairs_of(before, after):
+    """(i, j) of bifurcations of two variants that are the same: the nearest with the same side of stability and about the same frequency."""
+    gaps = []
+    for i, a in enumerate(before):
+        for j, b in enumerate(after):
+            rates = [x.get("whirl_frequency_rad_s") for x in (a, b)]
+            if a.get("stable_side") != b.get("stable_side") or None in rates and rates != [None, None]:
+                continue
+            if None not in rates and abs(rates[0] - rates[1]) > ALIKE * max(rates):
+                continue
+            gaps.append((abs(a["value"] - b["value"]), i, j))
+    pairs = []
+    for _, i, j in sorted(gaps):
+        if all(i != p and j != q for p, q in pairs):
+            pairs.append((i, j))
+    return pairs
+
+
 def draw_trends(study):
-    """Where bifurcations lie over what the sweep changes, with their bars. Lines join variants that have as many of them."""
+    """Where bifurcations lie over what the sweep changes, with their bars. Lines join what is the same bifurcation."""
     where = axis_of(study)
     columns = {c["name"]: c for c in study.summary.get("columns", [])}
     if where is None or any(t["beside"] for t in study.summary["trends"]):
@@ -259,23 +304,26 @@ def draw_trends(study):
         return []
     rows = [r for r in np.argsort(at, kind="stable") if np.isfinite(at[r])]
     figure, axes, _ = grid_of(len(panels), width=3.6, height=2.9, columns=3)
+    names = [str(n) for n in np.atleast_1d(study.get("table/variant"))]
     for axis, ((head, kind), numbers) in zip(axes, panels.items()):
-        counts = columns[f"{head}.{kind}.count"]["values"]
-        for number in numbers:
-            c, colour = columns[f"{head}.{kind}.{number}"], COLOURS[(number - 1) % len(COLOURS)]
-            there = [r for r in rows if c["values"][r] is not None]
-            for r in there:
+        events = events_of(study, head, kind, names)
+        course = {}  # (row, number) -> which course it belongs to
+        there = [r for r in rows if any(columns[f"{head}.{kind}.{n}"]["values"][r] is not None for n in numbers)]
+        for before, r in zip([None] + there, there):
+            here = [n for n in numbers if columns[f"{head}.{kind}.{n}"]["values"][r] is not None]
+            joined = {} if before is None else {j + 1: i + 1 for i, j in pairs_of(events[before], events[r])}
+            for n in here:
+                c = columns[f"{head}.{kind}.{n}"]
+                old = joined.get(n)
+                course[r, n] = course[before, old] if old is not None and (before, old) in course else len(set(course.values()))
+                colour = COLOURS[course[r, n] % len(COLOURS)]
                 axis.errorbar(at[r], c["values"][r], yerr=c["uncertainties"][r] or 0, marker=MARKS[kind][1], color=colour, **BAR)
-            for a, b in zip(there, there[1:]):
-                if counts[a] == counts[b] or number == 1:
-                    axis.plot([at[a], at[b]], [c["values"][a], c["values"][b]], color=colour, linewidth=1.2)
+                if old is not None and (before, old) in course:
+                    axis.plot([at[before], at[r]], [columns[f"{head}.{kind}.{old}"]["values"][before], c["values"][r]], color=colour, linewidth=1.2)
         axis.set_title(f"{head}: {MARKS[kind][0]}")
         axis.set_xlabel(label)
         axis.set_ylabel(columns[f"{head}.{kind}.1"]["unit"])
         known = [at[r] for r in rows]
         if known[0] > 0 and known[-1] / known[0] > 20:
             axis.set_xscale("log")
-    numbers = sorted({n for all_numbers in panels.values() for n in all_numbers})
-    handles = [Line2D([], [], color=COLOURS[(n - 1) % len(COLOURS)], label=f"number {n} along the branch") for n in numbers]
-    return save(figure, study, "trends", "bars: uncertainty; lines join variants that have equally many", handles)
-
+    return save(figure, study, "trends", "bars: uncertainty; lines join bifurcations on the same side of stability, of whirl frequencies that differ by less than a fifth")

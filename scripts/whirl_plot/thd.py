@@ -1,7 +1,7 @@
 """A film with its heat: what its iterations, a series of meshes, and one of speeds show."""
-import matplotlib.pyplot as plt
 import numpy as np
 
+from .canvas import plt
 from .style import GREY, INK, parameter_label, save
 from .thd_film import LABEL
 

@@ -1,8 +1,8 @@
 """Beside a film with heat: films of one temperature that have one quantity in common with it, and what clearance and fluid
 do over the temperature."""
-import matplotlib.pyplot as plt
 import numpy as np
 
+from .canvas import plt
 from .style import COLOURS, GREY, INK, save
 
 SAME = {"load": "load", "power_loss": "power loss", "mass_flow": "flow"}

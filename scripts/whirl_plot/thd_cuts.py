@@ -1,9 +1,9 @@
 """Sections through a film with its heat: profiles across the film, and bush, film and journal across and along the shaft."""
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import patheffects
 from matplotlib.patches import FancyArrowPatch
 
+from .canvas import plt
 from .style import DASHED, INK, LIGHT, save
 from .thd_film import HEAT, LABEL, RUPTURED, Film, closes, ring, stretches
 

@@ -71,11 +71,16 @@ class Unwrapped:
         return edges[1], edges[0], total / weight, own
 
     def strips(self, mask):
-        """Rectangles (rad, rad, m, m) of the cells of nodes in `mask`, those side by side in a row as one."""
+        """Rectangles (rad, rad, m, m) that the cells of nodes in `mask` fill: those side by side in a row as one, and rows that are alike."""
         z = np.concatenate((self.z[:1], (self.z[1:] + self.z[:-1]) / 2, self.z[-1:]))
         theta, mask = ring(self.theta, mask, self.closed)
         edges = np.concatenate((theta[:1], (theta[1:] + theta[:-1]) / 2, theta[-1:]))
-        return [(edges[start], edges[stop], z[j], z[j + 1]) for j, row in enumerate(mask) for start, stop in runs(list(row)) if row[start]]
+        found, open_ones = [], {}  # by their ends: the rectangle that goes on if the next row has the same one
+        for j, row in enumerate(mask):
+            here = {(start, stop): open_ones.get((start, stop), z[j]) for start, stop in runs(list(row)) if row[start]}
+            found += [(edges[a], edges[b], bottom, z[j]) for (a, b), bottom in open_ones.items() if (a, b) not in here]
+            open_ones = here
+        return found + [(edges[a], edges[b], bottom, z[-1]) for (a, b), bottom in open_ones.items()]
 
     def border(self, mask):
         """Segments [[(rad, m), (rad, m)]] between the cells of nodes in `mask` and others, and the film's ends."""

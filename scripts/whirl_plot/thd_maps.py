@@ -1,11 +1,11 @@
 """A film with its heat unwrapped: temperatures, pressure, thickness and flow, properties of its fluid, and heat flows. Cells of a groove
 and of a cavity are set apart: fields jump at their borders, and nothing is interpolated across them."""
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import patheffects
 from matplotlib.collections import LineCollection, PolyCollection
 
-from .style import GREY, INK, LIGHT, length_unit, save
+from .canvas import plt
+from .style import GREY, INK, LIGHT, ON_PRESSURE, PRESSURE, key, length_unit, save
 from .thd_film import HEAT, LABEL, RUPTURED, Film, ring
 
 SIGNED = "RdBu_r"
@@ -15,25 +15,48 @@ def film_of(study):
     return Film(study) if study.has("film/theta", "film/z", "film/temperature", "film/pressure", "film/thickness") else None
 
 
+def even(places):
+    """Whether places stand at equal distances."""
+    step = np.diff(places)
+    return len(step) > 0 and np.ptp(step) < 1e-3 * np.abs(step).mean()
+
+
+def with_halves(places):
+    """The ends of an image whose pixels have their middles at the places."""
+    half = (places[1] - places[0]) / 2
+    return places[0] - half, places[-1] + half
+
+
 def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, white=0):
     """A field over the unwrapped film. One that jumps has no contours where the film is ruptured. Nodes that are not `known` are left
-    blank. Colours of both signs are even about what is `white`; there are few enough of them for a picture of 256 colours."""
-    theta, z, shown, region = film.fine(values, jumps)
-    theta, z = np.degrees(theta), z * 1e3
-    if known is not None and not known.all():
-        _, _, share, _ = film.fine(known.astype(float), jumps)
-        shown, values = np.ma.masked_where(share < 1, shown), values[known]
+    blank. Colours of both signs are even about what is `white`."""
     low, high = values.min(), values.max()
+    if known is not None and not known.all():
+        low, high = values[known].min(), values[known].max()
     span = high - low
     same = span <= 1e-9 * max(abs(low), abs(high))  # rounding is no shape
+    levels = low + span * np.linspace(0.05, 0.95, 10)
     if same:
         low, high = low - 0.01 * abs(low), high + 0.01 * abs(high)
     if cmap == SIGNED:
         reach = max(white - low, high - white)
         low, high = white - reach, white + reach
-    mesh = axis.pcolormesh(theta, z, shown, cmap=plt.get_cmap(cmap, 41), vmin=low, vmax=high, rasterized=True)
-    levels = values.min() + span * np.linspace(0.05, 0.95, 10)
-    middles = (theta[1:] + theta[:-1]) / 2, (z[1:] + z[:-1]) / 2
+    around, nodes = ring(film.theta, values, film.closed)
+    around, along = np.degrees(around), film.z * 1e3
+    colours = dict(cmap=cmap, vmin=low, vmax=high)
+    if not jumps and known is None and even(around) and even(along):
+        # Straight between the nodes, as an image: as many quadrilaterals take ten times as long.
+        mesh = axis.imshow(nodes, extent=(*with_halves(around), *with_halves(along)), origin="lower", aspect="auto", interpolation="bilinear", **colours)
+        axis.set(xlim=around[[0, -1]], ylim=along[[0, -1]])
+        region, shown, middles = np.zeros(nodes.shape, int), np.ma.masked_invalid(nodes), (around, along)
+    else:
+        theta, z, shown, region = film.fine(values, jumps)
+        theta, z = np.degrees(theta), z * 1e3
+        if known is not None and not known.all():
+            _, _, share, _ = film.fine(known.astype(float), jumps)
+            shown = np.ma.masked_where(share < 1, shown)
+        mesh = axis.pcolorfast(theta, z, shown, **colours)
+        middles = (theta[1:] + theta[:-1]) / 2, (z[1:] + z[:-1]) / 2
     for part in np.unique(region):
         inside = np.ma.masked_where(region != part, shown)
         if inside.mask.all():
@@ -42,7 +65,14 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, 
         if (part != RUPTURED or not jumps) and len(here) and not same:
             axis.contour(*middles, inside, here, colors=ink, linewidths=0.5, alpha=0.6, corner_mask=False)
     axis.grid(False)
-    figure.colorbar(mesh, ax=axis, pad=0.015, label=label).outline.set_visible(False)
+    key(axis, mesh, label)
+
+
+def angle_ticks(axis, first, last):
+    """Ticks of an angle in degrees, read within one turn."""
+    step = next((s for s in (5, 10, 15, 30, 45) if (last - first) / s <= 9), 45)
+    at = np.arange(np.ceil(first / step - 1e-9), last / step + 1e-9) * step
+    axis.set_xticks(at, [f"{a % 360:g}" for a in at])
 
 
 def hatch_cavity(axis, film, colour=LIGHT):
@@ -59,7 +89,7 @@ def mark_regions(axis, film):
     axis.set_ylabel("z [mm]")
     first, last = np.degrees(ring(film.theta, film.theta, film.closed)[0][[0, -1]])
     axis.set_xlim(first, last)
-    axis.set_xticks(np.arange(np.ceil(first / 45 - 1e-9), last / 45 + 1e-9) * 45)
+    angle_ticks(axis, first, last)
     axis.set_ylim(film.z[0] * 1e3, film.z[-1] * 1e3)
     hatch_cavity(axis, film)
     if len(film.orifices):
@@ -103,7 +133,7 @@ def draw_maps(study):
         return []
     scale, unit = length_unit(film.thickness)
     maps = [("temperature in the middle of the film", film.middle, HEAT, LABEL, "white", True),
-            ("pressure", film.pressure / 1e6, "YlOrRd", "pressure [MPa]", "#5a1a00", False),
+            ("pressure", film.pressure / 1e6, PRESSURE, "pressure [MPa]", ON_PRESSURE, False),
             ("film thickness", film.thickness * scale, "viridis_r", f"thickness [{unit}]", "white", False)]
     if study.has("film/pressure_isothermal"):
         change = (film.pressure - study.get("film/pressure_isothermal")) / 1e3

@@ -1,10 +1,11 @@
 """Sections through a film with its heat where lubricant comes in: at an orifice or a groove, and half-way to the next one."""
-import matplotlib.pyplot as plt
 import numpy as np
 
+from .canvas import plt
 from .style import INK, length_unit, save, span_of
 from .thd_cuts import at_speed, axial, edge, fill_film, parts, regions_in_words
 from .thd_film import LABEL, Film, ring, stretches
+from .thd_maps import angle_ticks
 
 SOLID = "#e6e6e6"
 
@@ -88,7 +89,7 @@ def draw_film(study):
         of_film(figure, axis, film, region, np.degrees(theta), thickness, values, limits[1], scale, open_at)
         axis.set_title(f"around at z = {z[j]:.3g} mm, {where}")
         axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
-        axis.set_xticks(np.arange(np.ceil(low / 45 - 1e-9), high / 45 + 1e-9) * 45)
+        angle_ticks(axis, low, high)
     for axis in axes.flat:
         axis.set_ylabel(f"height [{unit}]")
     regions = np.concatenate([film.region[:, columns].ravel(), film.region[rows].ravel()])

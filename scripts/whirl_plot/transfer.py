@@ -1,8 +1,7 @@
 """Frequency responses: amplitude and phase of every output over the frequency, one colour for each input."""
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.lines import Line2D
 
+from .canvas import Line2D, plt
 from .style import COLOURS, DASHED, INK, ROTATION, save, speed_axis
 
 LINES = ("-", (0, (4, 2)), (0, (1.2, 1.4)), (0, (7, 1.6, 1.2, 1.6)))

@@ -1,5 +1,4 @@
 """Whirl map: which way every node of the shaft turns in each mode, over the speed and along the shaft."""
-import matplotlib.pyplot as plt
 import numpy as np
 
 from .campbell import modes_of, with_either
@@ -7,6 +6,11 @@ from .shapes import bearing_places
 from .style import GREY, INK, grid_of, save, speed_axis
 
 MOST = 12  # modes in one picture, those of lowest frequency
+
+
+def is_plain(turning, whirl):
+    """Whether all nodes of a mode turn alike at all speeds."""
+    return np.all(whirl == "either") or np.ptp(turning[np.isfinite(turning)]) < 0.02 if np.isfinite(turning).any() else True
 
 
 def draw(study):
@@ -17,6 +21,8 @@ def draw(study):
     number, at = study.get("spectrum/mode"), study.get("spectrum/speed")
     to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
     modes = sorted((m for m in modes_of(study) if len(m[1]) > 1), key=lambda m: m[2][-1])[:MOST]
+    # On circles every node turns forward or backward all along: a plain rectangle, which the title says better.
+    modes = [m for m in modes if not is_plain(turning[number == m[0]], m[4])]
     if not modes:
         return []
     figure, axes, _ = grid_of(len(modes), 3.0, 2.1)

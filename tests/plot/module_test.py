@@ -133,7 +133,7 @@ def ticks_once():
     asked = []
     real, kept = Axis._update_ticks, style.remembered
     Axis._update_ticks = lambda axis: asked.append(axis) or real(axis)
-    style.use_style()
+    style.use_style(("png", "svg"))
     try:
         with tempfile.TemporaryDirectory() as name:
             count, quick = pictures(pathlib.Path(name))

@@ -3,6 +3,7 @@
 import pathlib
 import sys
 import tempfile
+import types
 
 import h5py
 import matplotlib.pyplot as plt
@@ -12,7 +13,7 @@ from matplotlib.collections import LineCollection, QuadMesh
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, orbits, orders, shapes, style, sweep, thd_compare,  # noqa: E402
+from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, multipliers, orbits, orders, shapes, style, sweep, thd_compare,  # noqa: E402
                         thd_cuts, thd_film, thd_maps, thd_sections)
 from whirl_plot.subject import Drawn  # noqa: E402
 
@@ -39,6 +40,19 @@ def results_with(folder, fill):
 
 def lines_of(axis, colour=None):
     return [line.get_xydata() for line in axis.get_lines() if len(line.get_xdata()) > 1 and colour in (None, line.get_color())]
+
+
+def field_of(axis):
+    """The image of a map, without the key beside it."""
+    return next(image for image in axis.get_images() if image.get_label() != "key")
+
+
+def pixels_of(image):
+    """Middles (x, y) of the pixels, row by row."""
+    left, right, low, high = image.get_extent()
+    rows, columns = image.get_array().shape
+    x, y = ((np.arange(n) + 0.5) / n * (b - a) + a for n, a, b in ((columns, left, right), (rows, low, high)))
+    return np.stack([g.ravel() for g in np.meshgrid(x, y)], axis=1)
 
 
 def beams():
@@ -233,7 +247,7 @@ def colours(folder):
 
 
 def harmonics(folder):
-    """Of cycles without unbalance: half-axes over multiples of the whirl; of forced ones no such picture."""
+    """Of cycles without unbalance: stems of the half-axes over the harmonics of the whirl; of forced ones no such picture."""
     pick = np.linspace(0, 139, 20).astype(int)
 
     def fill(root):
@@ -245,12 +259,13 @@ def harmonics(folder):
         study = results["pair, G2.5"]
         axis = Figures().draw(orbits, orbits.draw_harmonics, study)["harmonics"].axes[2]
         assert not Figures().draw(orbits, orbits.draw_harmonics, results["pair, G6.3"])
-        cycle, period = study.orbits[-1], study.get("branch/period")[139]
-    f, size = lines_of(axis)[-1].T
+        cycle = study.orbits[-1]
+    at, size = lines_of(axis)[-1].T
     swing = np.ptp(cycle.y[:, 2]) / 2.2 * 1e6  # y = 1.1 swing sin(t + 0.3), x = swing (cos t + 0.1 cos 2 t)
     larger = np.linalg.svd([[1, 0], [1.1 * np.sin(0.3), 1.1 * np.cos(0.3)]])[1][0]
-    assert np.allclose(f[:3] * period, [1, 2, 3]) and np.allclose(size[:2] / swing, [larger, 0.1], rtol=1e-3), (f[:3] * period, size[:2] / swing)
-    assert (size[2:] < 1e-9 * swing).all()
+    # Stems stand side by side at their number; none below the frame.
+    assert np.array_equal(np.round(at), [1, 2]) and np.allclose(size / swing, [larger, 0.1], rtol=1e-3), (at, size / swing)
+    assert axis.get_xlim() == (0.5, 2.5) and size.min() > axis.get_ylim()[0]
 
 
 def responses_of_a_sweep(folder):
@@ -496,12 +511,12 @@ def ruptured(folder):
     hatched = [c for c in warm.collections if c.get_hatch()]
     corners = [p.vertices[:4] for p in hatched[0].get_paths()]
     area = sum(np.ptp(c[:, 0]) * np.ptp(c[:, 1]) for c in corners)
-    assert len(corners) == 2 * 17 and np.isclose(area, 17 * 7.5 * 30), "whole cells, also at the seam"
+    assert len(corners) == 2 and np.isclose(area, 17 * 7.5 * 30), "whole cells, also at the seam"
     assert {tuple(np.round(np.sort(c[[0, 1], 0]), 9)) for c in corners} == {(0, 63.75), (296.25, 360)}
     outline, = (c for c in warm.collections if c.get_label() == "groove")
     corners = np.concatenate(outline.get_segments())
     assert np.allclose((corners.min(axis=0), corners.max(axis=0)), ((101.25, -12.1875), (138.75, 12.1875))), "cells, not nodes"
-    mesh = next(c for c in warm.collections if isinstance(c, QuadMesh))
+    mesh = field_of(warm)
     drawn = np.asarray(mesh.get_array()).ravel()
     assert set(np.round(drawn[drawn < 334])) == {310, 320} and drawn[drawn > 321].min() >= 335 - 1e-9, "nothing between regions"
     contours = [p for c in warm.collections if c not in (*hatched, outline, mesh) and c.get_label() != "_halo" for p in c.get_paths() if len(p.vertices)]
@@ -547,7 +562,7 @@ def heat_flows(folder):
         gas = Figures().draw(thd_maps, thd_maps.draw_heat, results["hot"])["thd-heat"]
     last = [a.get_title("left") for a in gas.axes if a.get_title("left")][-1]
     assert last.startswith("both together: 16.67 to 70 kW/m\u00b2"), last
-    signed = [c for c in figures["thd-heat"].axes[1].collections if isinstance(c, QuadMesh)][0]
+    signed = field_of(figures["thd-heat"].axes[1])
     low, high = signed.get_clim()
     assert low == -high and 7.9 < high <= 8, "white is no heat flow"
     titles = [a.get_title("left") for a in figures["thd-fluid"].axes if a.get_title("left")]
@@ -566,7 +581,7 @@ def velocities(folder):
     with results_with(folder, lambda root: None) as results:
         above, below = Figures().draw(thd_maps, thd_maps.draw_velocity, results["hot"])["thd-velocity"].axes[:2]
     for axis, white, reach in ((above, 75, 40), (below, 0, 30)):
-        mesh = next(c for c in axis.collections if isinstance(c, QuadMesh))
+        mesh = field_of(axis)
         assert np.allclose(mesh.get_clim(), (white - reach, white + reach)), mesh.get_clim()
         marks, = (line.get_xydata() for line in axis.get_lines() if line.get_label() == "orifice")
         assert np.allclose(np.sort(marks[:, 0]), 45 * np.arange(9)) and not marks[:, 1].any(), marks
@@ -581,9 +596,8 @@ def velocities(folder):
             film = thd_film.Film(results["hot"])
             above, below = Figures().draw(thd_maps, thd_maps.draw_velocity, results["hot"])["thd-velocity"].axes[:2]
         for axis in (above, below):
-            mesh = next(c for c in axis.collections if isinstance(c, QuadMesh))
-            corners, drawn = mesh.get_coordinates(), np.ma.asarray(mesh.get_array())
-            middles = (corners[1:, 1:] + corners[:-1, :-1]).reshape(-1, 2) / 2
+            mesh = field_of(axis)
+            drawn, middles = np.ma.asarray(mesh.get_array()), pixels_of(mesh)
             blank = np.broadcast_to(np.ma.getmaskarray(drawn), drawn.shape).ravel()
             assert (blank == ((region_at(film, *middles.T) == thd_film.RUPTURED) & (not keeps))).all(), "blank in the cavity alone"
         assert (region_at(film, *streamlines(below).T) == thd_film.RUPTURED).any() == keeps, "lines end at a cavity"
@@ -642,7 +656,7 @@ def films_of_machines(folder):
         corners = np.concatenate([p.vertices[:4] for p in hatched.get_paths()])
         assert np.allclose((corners[:, 0].min(), corners[:, 0].max()), (-80.5, -60)), "to the faces of its cells"
     for axis, values in ((axes[2], (320 - 273.15, None)), (axes[3], (0.4, 1.0))):
-        mesh = next(c for c in axis.collections if isinstance(c, QuadMesh))
+        mesh = field_of(axis)
         drawn = np.unique(np.round(np.ma.compressed(mesh.get_array()), 6))
         if values[1] is None:
             assert np.isclose(drawn[0], values[0]) and drawn[1] > 338 - 273.15, "nothing between film and cavity"
@@ -663,13 +677,86 @@ def legends():
     assert style.columns_of(["stable", "unstable", "x" * 60, "y"], 7.2, 6) == 3 and style.columns_of(["x" * 60] * 2, 7.2, 6) == 1
 
 
+def turning_branches():
+    """Colours are the parameter where it rises or falls, else the way along the branch; none is yellow."""
+    orbit = lambda p: types.SimpleNamespace(parameter=p)  # noqa: E731
+    colours, by_parameter = orbits.colours_of([orbit(p) for p in (1.0, 2.0, 9.0)])
+    assert by_parameter and np.allclose(colours[1], plt.cm.viridis(0.9 / 8)), "a ninth of the way"
+    colours, by_parameter = orbits.colours_of([orbit(p) for p in (1.0, 9.0, 2.0)])
+    assert not by_parameter and np.allclose(colours[1], plt.cm.viridis(0.45)) and max(colours[:, 0]) < 0.8
+
+
+def sharp_points():
+    """No curve through one computed point between two others: lines, and every point is seen; the curve goes on where points suffice."""
+    at = np.array([0, 1, 2, 3, 4, 5, 6, 7, 8.0])
+    peak = np.array([0, 0.1, 0.2, 0.3, 3.0, 0.3, 0.2, 0.1, 0])
+    branch = curves.Branch(at)
+    assert list(np.flatnonzero(branch.straight(peak))) == [3, 4]
+    (x, y, solid), = branch.stretches(peak, np.ones(9, bool), [])
+    assert np.allclose(np.interp([3.25, 3.5, 4.5], x, y), [0.975, 1.65, 1.65]) and np.isclose(branch.at(peak, (3, 0.5)), 1.65)
+    smooth = np.sin(np.linspace(0, np.pi, 9))
+    assert not branch.straight(smooth).any()
+
+
+def courses_of_multipliers():
+    """Each goes on at its nearest one of the next cycle, whatever the order of the columns; a jump joins nothing."""
+    values = np.array([[0.9, -0.5], [-0.55, 0.95], [1.02, -0.6], [-5.0, 1.05]], complex)
+    found = set(zip(*multipliers.joined(values)))
+    assert found == {(0, 0, 1), (0, 1, 0), (1, 0, 1), (1, 1, 0), (2, 0, 1)}, found
+    parameter = np.array([1.0, 2, 3, 4])
+    assert multipliers.where_crossed("flip", 2, parameter, values) == -1 and multipliers.where_crossed("cyclic_fold", 2, parameter, values) == 1
+    pair = np.array([[0.6 + 0.7j, 0.6 - 0.7j], [0.6 + 0.9j, 0.6 - 0.9j]])
+    at = multipliers.where_crossed("neimark_sacker", 1.5, parameter[:2], pair)
+    assert np.isclose(abs(at), 1) and at.imag > 0.7
+
+
+def same_bifurcations():
+    """A trend joins bifurcations by side and frequency, not by number."""
+    event = lambda value, side, rate=None: {"value": value, "stable_side": side, "whirl_frequency_rad_s": rate}  # noqa: E731
+    before = [event(100, "below", 50.0), event(300, "above", 50.0)]
+    after = [event(40, "below", 12.0), event(110, "below", 51.0), event(310, "above", 49.0)]
+    assert sorted(sweep.pairs_of(before, after)) == [(0, 1), (1, 2)]
+    assert sweep.pairs_of([event(1, "below")], [event(2, "below")]) == [(0, 0)] and not sweep.pairs_of([event(1, "below")], [event(2, "below", 3.0)])
+
+
+def without_meaning(folder):
+    """No picture of a straight line, of a path that stays where it is, or of a motion that was drawn before."""
+    def fill(root):
+        nodes = root["studies/at service speed/nodes"]
+        z = nodes["z"][:]
+        nodes["y"][...] = 3e-5 + 1e-6 * z
+        if "x" in nodes:
+            nodes["x"][...] = 0
+        if "moment" in nodes:
+            del nodes["moment"]
+        branch = root["studies/balanced/branch"]
+        for k in "xy":
+            branch[k][...] = 1e-5
+        root.copy(root["studies/period two"], root["studies"], "again")
+        root["studies/again"].attrs["title"] = "again"
+
+    with results_with(folder, fill) as results:
+        assert not Figures().draw(shapes, shapes.draw_sag, results["at service speed"])
+        assert not Figures().draw(orbits, orbits.draw_locus, results["balanced"])
+        names = [s.name for s in results.studies if s.kind == "motion"]
+        assert len(names) == 2
+        figures = [Figures().draw(motion, motion.draw, results[n]) for n in names]
+        histories = [Figures().draw(motion, motion.draw_history, results[n]) for n in names]
+    assert sorted(map(len, figures)) == sorted(map(len, histories)) == [0, 1]
+
+
 style.use_style()
 beams()
+turning_branches()
+sharp_points()
+courses_of_multipliers()
+same_bifurcations()
 refined()
 legends()
 border_of_stability()
 for check in (sag, mode_shapes, growth, campbell_lines, words, courses, colours, harmonics, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
-              coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines):
+              coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines, without_meaning):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
+    plt.close("all")
 print("pictures show what there is")

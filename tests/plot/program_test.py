@@ -157,7 +157,7 @@ def slopes_along_the_shaft(work):
 
 def made(results, draw, *words, run=command.call):
     """Pictures and report of a run: all figures are made, those in `draw` are drawn; all are drawn by the commands themselves."""
-    for done in (run("plot", results.directory, draw=draw), run("report", results.directory)):
+    for done in (run("plot", results.directory, "--formats", "png,svg", draw=draw), run("report", results.directory)):
         assert done.returncode == 0 and not done.stderr, done.stderr
     page = (results.directory / "report.html").read_text()
     for w in words:
@@ -165,8 +165,8 @@ def made(results, draw, *words, run=command.call):
     assert (results.directory / "machine.png").is_file() and (results.directory / "machine.svg").is_file()
 
 
-def by_the_commands(script, directory, draw=None):
-    return subprocess.run([str(ROOT / "scripts" / script), str(directory)], capture_output=True, text=True)
+def by_the_commands(script, directory, *words, draw=None):
+    return subprocess.run([str(ROOT / "scripts" / script), str(directory), *words], capture_output=True, text=True)
 
 
 with tempfile.TemporaryDirectory() as name:

@@ -276,7 +276,7 @@ def build(directory):
     studies = [
         {"name": "at service speed", "kind": "static", "status": "completed", "wall_seconds": 0.4,
          "values": {"mass.total": {"value": 42165.66, "unit": "kg"}, "load.B3": {"value": None, "unit": "N"}},
-         "bifurcations": [], "modes": [], "points": 1},
+         "bifurcations": [], "modes": [], "points": 1, "brief": {"sentences": ["largest load 213.4 +- 0.1 kN on B3"], "tables": []}},
         {"name": "modes", "kind": "modes", "status": "completed", "wall_seconds": 3.0, "values": {}, "bifurcations": [],
          "modes": [{"speed": 3600, "real": -0.583, "imag": 81.678, "log_decrement": 0.0448, "whirl": "forward"}], "points": 40},
         {"name": "generator pair", "kind": "unbalance_response", "status": "completed", "wall_seconds": 1.0,

@@ -1,0 +1,42 @@
+"""matplotlib in the look of all pictures, imported when the first one is drawn: what only reads results needs none of it, and it takes as
+long as three pictures."""
+import functools
+import gc
+
+
+@functools.cache
+def pyplot():
+    gc.set_threshold(50_000, 50)  # figures are many small objects: counting their garbage takes a tenth of the time
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot
+
+    from .style import COLOURS, GREY, INK, LIGHT
+    matplotlib.rcParams.update({
+        "figure.dpi": 110, "savefig.dpi": 150, "figure.constrained_layout.use": True,
+        "font.size": 9.5, "axes.titlesize": 10, "axes.titleweight": "bold", "axes.titlelocation": "left",
+        "axes.labelsize": 9.5, "axes.labelcolor": INK, "axes.edgecolor": GREY, "axes.linewidth": 0.8,
+        "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
+        "grid.color": LIGHT, "grid.linewidth": 0.5, "xtick.color": INK, "ytick.color": INK,
+        "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "legend.fontsize": 8.5, "legend.frameon": False,
+        "lines.linewidth": 1.6, "lines.solid_capstyle": "round", "axes.prop_cycle": matplotlib.cycler(color=COLOURS),
+        # Texts stay texts and equal pictures equal files.
+        "svg.fonttype": "none", "svg.hashsalt": "whirl", "path.simplify": True, "path.simplify_threshold": 0.15,
+    })
+    return matplotlib.pyplot
+
+
+class Later:
+    """`plt` of matplotlib, at its first use."""
+
+    def __getattr__(self, name):
+        return getattr(pyplot(), name)
+
+
+plt = Later()
+
+
+def Line2D(*points, **look):  # noqa: N802
+    """A line of matplotlib, for legends."""
+    from matplotlib.lines import Line2D as Line
+    return Line(*points, **look)
