@@ -64,6 +64,8 @@ print(round(run.values("response")["unbalance.disc.mass"].value, 2))
     shutil.copy(source / "CMakeLists.txt", work)
     done = run("/usr/bin/python3", "-m", "pip", "install", "--no-index", "--no-deps", "--target", work / "pip", work / "scripts")
     check("pip install ./scripts", done.returncode == 0, done.stdout + done.stderr)
+    done = run("/usr/bin/python3", "-m", "pip", "install", "--no-index", "--dry-run", "--break-system-packages", work / "scripts")
+    check("Debian's packages are all it depends on", done.returncode == 0, done.stdout + done.stderr)
     example = "import importlib.metadata, sys; sys.path.insert(0, 'pip'); import whirl, whirl_plot; print(whirl.__file__, importlib.metadata.version('whirl'))"
     done = run("/usr/bin/python3", "-c", example)
     check("its modules and version", done.stdout.split()[-1:] == [version] and "/pip/" in done.stdout, done.stdout + done.stderr)
