@@ -21,12 +21,10 @@ using core::InputError;
 class ListCodec : public Codec, public Knows {
 public:
   ListCodec(CodecPtr item, ListAccess a, bool isotropic = false)
-      : item_(std::move(item)), a_(std::move(a)), isotropic_(isotropic) {}
-  [[nodiscard]] CodecPtr single() const {
-    auto out = std::make_shared<ListCodec>(item_, a_);
-    out->single_ = true;
-    return out;
-  }
+      : item_(std::move(item)),
+        a_(std::move(a)),
+        isotropic_(isotropic),
+        single_(a_.fixed == 0 && (item_->spec() || !choices_of(*item_).empty() || item_->type() == "text")) {}
   [[nodiscard]] CodecPtr isotropic() const { return std::make_shared<ListCodec>(item_, a_, true); }
   void read(const Node& node, void* value, Reading& r) const override {
     if (isotropic_ && node.kind == Node::Kind::scalar) return read(spread(node), value, r);
@@ -324,11 +322,6 @@ CodecPtr isotropic_codec(const CodecPtr& list) {
   const auto* codec = dynamic_cast<const ListCodec*>(list.get());
   core::require(codec != nullptr, "only a list of numbers is isotropic");
   return codec->isotropic();
-}
-CodecPtr single_codec(const CodecPtr& list) {
-  const auto* codec = dynamic_cast<const ListCodec*>(list.get());
-  core::require(codec != nullptr, "only a list may be a single number");
-  return codec->single();
 }
 CodecPtr table_codec(const Structure& row, ListAccess access, std::string scalar) {
   return std::make_shared<TableCodec>(row, std::move(access), std::move(scalar));

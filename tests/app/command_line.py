@@ -38,6 +38,7 @@ if not few:
     whirl("describe", "bearings.geometry.clearance", code=0, out="bearings.NAME.geometry.clearance")
     whirl("describe", "cycle_branch", code=0, out="studies.1.cycle_branch.intervals")
     whirl("describe", "cycle_branch.step", code=0, out="studies.1.cycle_branch.step.initial")
+    whirl("check", train / "static.yaml", "--set", "studies=[{modes: {speed: 3000 rpm}}, {static: {speeds: 3000 rpm}}, {modes: {name: b, speeds: [3000 rpm]}}]", code=0, out="3 studies")
     whirl("describe", "impeller", code=0, out="elements.NAME.role")
     whirl("describe", "windage", code=2, err="there is no option 'windage'")
     whirl("describe", "half_sommerfeld", code=0, out="negative pressure is cut off after the solution")

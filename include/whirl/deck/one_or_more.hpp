@@ -12,20 +12,17 @@ struct OneOrMore {
   std::vector<double> values;
 };
 
-/// The codec of a list of any length that takes a single value as a list of one.
-[[nodiscard]] CodecPtr single_codec(const CodecPtr& list);
-
 template <>
 struct CodecOf<OneOrMore> {
   static CodecPtr make(const Spec& s) {
-    return single_codec(list_codec(
-        real_codec(s), {.resize =
-                            [](void* v, std::size_t n) {
-                              static_cast<OneOrMore*>(v)->values.assign(n, 0.0);
-                              return true;
-                            },
-                        .size = [](const void* v) { return static_cast<const OneOrMore*>(v)->values.size(); },
-                        .at = [](void* v, std::size_t i) -> void* { return &static_cast<OneOrMore*>(v)->values[i]; }}));
+    return list_codec(real_codec(s),
+                      {.resize =
+                           [](void* v, std::size_t n) {
+                             static_cast<OneOrMore*>(v)->values.assign(n, 0.0);
+                             return true;
+                           },
+                       .size = [](const void* v) { return static_cast<const OneOrMore*>(v)->values.size(); },
+                       .at = [](void* v, std::size_t i) -> void* { return &static_cast<OneOrMore*>(v)->values[i]; }});
   }
 };
 

@@ -9,7 +9,7 @@ void describe(deck::Description<BearingMapOptions>& d) {
   using O = BearingMapOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.add("bearing", &O::bearing, "bearing to look at; the first of the deck if not given");
-  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
+  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required().alias("speeds");
   d.add("max_eccentricity", &O::max_eccentricity, deck::positive,
         "largest eccentricity, in clearances; that of a compliant bearing may exceed 1");
   d.add("points", &O::points, deck::in(2, 1e8), "eccentricities, evenly spaced");

@@ -23,7 +23,7 @@ void describe(deck::Description<DynamicCoefficientsOptions>& d) {
   using O = DynamicCoefficientsOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.add("bearing", &O::bearing, "bearing to look at; the first of the deck if not given");
-  d.add("speeds", &O::speeds, "rad/s", deck::positive, "shaft speeds, one after the other").required();
+  d.add("speeds", &O::speeds, "rad/s", deck::positive, "shaft speeds, one after the other").required().alias("speed");
   d.add("eccentricity", &O::eccentricity, deck::Check{.min = 0, .max = 1, .max_open = true},
         "distance of the journal from the bearing centre, in clearances");
   d.add("attitude", &O::attitude, "rad", deck::any, "direction of the journal from there, from +x counter-clockwise");

@@ -21,7 +21,7 @@ void describe(deck::Description<GasBearingOptions>& d) {
   using O = GasBearingOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.add("bearing", &O::bearing, "bearing to look at; the first of the deck if not given");
-  d.add("speeds", &O::speeds, "rad/s", deck::non_negative, "shaft speeds; each gets a curve").required();
+  d.add("speeds", &O::speeds, "rad/s", deck::non_negative, "shaft speeds; each gets a curve").required().alias("speed");
   d.add("eccentricities", &O::eccentricities, deck::Check{.min = 0, .max = 1, .max_open = true},
         "distances of the journal from the bearing centre, in clearances; fields are those of the last");
   d.add("direction", &O::direction, "rad", deck::any, "of the journal from the centre, from +x counter-clockwise");

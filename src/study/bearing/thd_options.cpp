@@ -27,7 +27,8 @@ void describe(deck::Description<ThdOptions>& d) {
   d.add("bearing", &O::bearing, "bearing to look at; the first of the deck if not given");
   d.add("speeds", &O::speeds, "rad/s", deck::non_negative,
         "shaft speeds, one after the other; fields are written of the last")
-      .required();
+      .required()
+      .alias("speed");
   d.add("eccentricity", &O::eccentricity, deck::Check{.min = 0, .max = 1, .max_open = true},
         "distance of the journal from the bearing centre, in clearances");
   d.add("attitude", &O::attitude, "rad", deck::any, "direction of the journal from there, from +x counter-clockwise");

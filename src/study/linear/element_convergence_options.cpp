@@ -11,7 +11,7 @@ namespace whirl::study {
 void describe(deck::Description<ElementConvergenceOptions>& d) {
   using O = ElementConvergenceOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("speed", &O::speed, "rad/s", deck::non_negative, "shaft speed").required();
+  d.add("speed", &O::speed, "rad/s", deck::non_negative, "shaft speed").required().alias("speeds");
   d.add(
       "parts", &O::parts, deck::in(1, 1000),
       "numbers of equal parts into which every segment of the shaft is cut, rising; errors are counted from the last");

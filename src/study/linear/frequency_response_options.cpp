@@ -118,7 +118,7 @@ CoefficientsAt interpolated(const std::vector<CoefficientsAt>& table, double fre
 void describe(deck::Description<FrequencyResponseOptions>& d) {
   using O = FrequencyResponseOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("speed", &O::speed, "rad/s", deck::non_negative, "shaft speed, which is constant").required();
+  d.add("speed", &O::speed, "rad/s", deck::non_negative, "shaft speed, which is constant").required().alias("speeds");
   d.add("range", &O::range, std::string(deck::frequency), deck::positive,
         "range of the frequency; results carry its unit")
       .required();

@@ -35,7 +35,9 @@ void describe(deck::Description<ReductionOrbits>& d) {
 void describe(deck::Description<ReductionErrorsOptions>& d) {
   using O = ReductionErrorsOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, also that of complex modes").required();
+  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, also that of complex modes")
+      .required()
+      .alias("speeds");
   d.add("methods", &O::methods, "reductions to compare; that of the rotor plays no part");
   d.add("freedoms", &O::freedoms, deck::positive,
         "freedoms kept, of both planes together: masters and modes. In state space each stands for two states",

@@ -8,7 +8,7 @@ namespace whirl::study {
 void describe(deck::Description<LinearityOptions>& d) {
   using O = LinearityOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
+  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required().alias("speeds");
   d.add("bearing", &O::bearing, "bearing whose journal is excited and watched; the first one if no 'node' is given");
   d.add("node", &O::node, deck::at_least(1), "instead: node of the shaft that is excited and watched");
   d.add("levels", &O::levels, "N", deck::positive,

@@ -28,7 +28,7 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("unbalance", &O::unbalance,
         "names of the unbalances to apply, all at once, and 'discs' for what eccentric and skewed discs do; none for "
         "the balanced machine");
-  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
+  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required().alias("speeds");
   d.named("forces", &O::forces, &ForceOptions::name, "external forces over the time since the beginning, by name");
   d.add("start", &O::start, "state at the beginning");
   d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");
