@@ -7,7 +7,7 @@ import sys
 import whirl
 
 from . import style
-from .subject import Drawn, said_in_a_sentence
+from .subject import Drawn, called, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report: functions of modules, which are imported for what there is.
 PICTURES = {
@@ -68,7 +68,7 @@ def formats(text):
 
 
 def main(argv):
-    parser = argparse.ArgumentParser(prog="scripts/plot", description="Draws every picture that a results folder has data for.")
+    parser = argparse.ArgumentParser(prog=called("plot"), description="Draws every picture that a results folder has data for.")
     parser.add_argument("directory", metavar="DIR", type=pathlib.Path, help="folder of a run, with its results.h5")
     parser.add_argument("--formats", type=formats, default=("png",), help="of the pictures, with commas between: png (default), svg, pdf")
     words = parser.parse_args(argv)

@@ -70,10 +70,16 @@ class Drawn(whirl.Results):
         return Whole(self, name)
 
 
+def called(command):
+    """What the user calls: `whirl-plot` of an installation, `scripts/plot` of the sources."""
+    name = pathlib.Path(sys.argv[0]).name
+    return name if name == f"whirl-{command}" else f"scripts/{command}"
+
+
 def results_directory(command, argv):
-    """The results folder that a command `scripts/COMMAND DIR` was given, or the exit code if it was not given one."""
+    """The results folder that a command `COMMAND DIR` was given, or the exit code if it was not given one."""
     if len(argv) != 1 or argv[0] in ("-h", "--help"):
-        print(f"usage: scripts/{command} DIR", file=sys.stderr)
+        print(f"usage: {called(command)} DIR", file=sys.stderr)
         return 0 if argv and argv[0] in ("-h", "--help") else 2
     return pathlib.Path(argv[0])
 

@@ -59,6 +59,10 @@ print(round(run.values("response")["unbalance.disc.mass"].value, 2))
     done = run("whirl-plot", "out", "--formats", "png")
     check("whirl-plot", done.returncode == 0 and (work / "out/response.response.png").is_file(), done.stderr)
 
+    for command in ("whirl-plot", "whirl-report"):
+        done = run(command, "--help")
+        check(f"{command} --help", f"usage: {command} " in done.stdout + done.stderr, done.stdout + done.stderr)
+
     # From the sources by pip, without network.
     shutil.copytree(source / "scripts", work / "scripts")
     shutil.copy(source / "CMakeLists.txt", work)
