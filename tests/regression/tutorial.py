@@ -120,6 +120,7 @@ def check(h, pages, runs):
     pages.states("3_oil_films", "7560.1 rpm", threshold(three), "threshold", 0.02)
     q = three.values("threshold")
     pages.states("3_oil_films", "0.507 of the speed", q["whirl_frequency"].value / q["threshold"].value, "whirl ratio")
+    pages.states("3_oil_films", "18.1 %", (threshold(three) / 6400 - 1) * 100, "margin")
     h.true("3_oil_films: the Hopf point is subcritical", bifurcation(three, "threshold", "hopf").get("criticality") == "subcritical")
     h.true("a film on a mesh moves the threshold by 1 %", 0.005 < abs(threshold(runs["3_oil_films+"]) / threshold(three) - 1) < 0.015)
 
@@ -145,6 +146,8 @@ def check(h, pages, runs):
     pages.states("5_seal", "55.4 Hz", v["at.6400.first_forward.frequency"] * RPM / 60, "first forward mode")
     pages.states("5_seal", "2.05", v["at.6400.first_forward.log_decrement"], "its decrement")
     pages.states("5_seal", "0.40", v["at.6400.least_damped.log_decrement"], "least damped mode")
+    margin = next(f for f in five.summary["service_speed"]["facts"] if f["what"].startswith("margin"))
+    pages.states("5_seal", "17.0 %", margin["value"], "margin at the service speed")
     sweep = next(c for c in five["clearance"].summary["columns"] if c["name"] == "threshold.threshold")
     for text, found in zip(("7486 rpm", "8122 rpm", "6887 rpm", "6357 rpm"), sweep["values"], strict=True):
         pages.states("5_seal", text, found * RPM, "threshold")
