@@ -99,7 +99,7 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
     report.fail("cavitation", "a gas does not cavitate: leave 'cavitation' out");
   if (options.cavitation == ThdOptions::Cavitation::mass_conserving &&
       std::ranges::any_of(options.speeds, [](const deck::Quantity& speed) { return speed.value == 0; }))
-    report.fail("speeds", "at rest nothing moves what the cavity of a film that conserves its mass holds");
+    report.fail("speeds", "a mass-conserving film needs a turning journal: leave the speed 0 out");
   if (const auto both = orifices_at_one_node(options, g.length))
     report.fail(
         fmt::format("orifices.{}", *both + 1),

@@ -120,7 +120,7 @@ StudyResult MeshConvergence::run(Context& context) {
   for (std::size_t i = first; i < chosen.size(); ++i) {
     const Located& origin = all[static_cast<std::size_t>(chosen[i]) - 1];
     if (origin.event == solve::Event::branch_point) {  // for one a Hopf point, where there is no cycle yet
-      note(fmt::format("bifurcation {} is none of cycles, or was not located", chosen[i]));
+      note(fmt::format("bifurcation {} is not one of cycles, or it was not located", chosen[i]));
       continue;
     }
     if (now.value.empty()) now = {origin, {origin.cycle.parameter / scale}, {0}, {0}, io::no_value};

@@ -87,7 +87,7 @@ void LocusFollower::begin() {
     make_equilibria();
   if (!condition_)
     throw core::NotConverged(
-        fmt::format("bifurcation {} of '{}' is none that can be followed", options_.bifurcation, options_.of));
+        fmt::format("bifurcation {} of '{}' is of a type that cannot be followed", options_.bifurcation, options_.of));
 }
 
 system::Train LocusFollower::train_at(double first, const FilmFactor& film) const {
