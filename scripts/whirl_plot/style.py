@@ -148,6 +148,14 @@ def save(figure, study, what, note="", handles=(), columns=6, of=""):
     return files
 
 
+PAGE = 1300  # pixels that a page shows in its width
+
+
+def fineness(figure):
+    """Pixels an inch: what is wider than a page need not have more of them than the page."""
+    return min(plt.rcParams["savefig.dpi"], max(110, PAGE / figure.get_figwidth()))
+
+
 def write(figure, stem):
     """The figure as `stem`.png, `stem`.svg or `stem`.pdf, as was asked. A PNG of lines on white has 256 colours, which is a third of the
     size of one of all; one of fields has all. Each is named in the run's manifest before it is written. Returns their paths.
@@ -155,13 +163,14 @@ def write(figure, stem):
     The layout is computed once, for all formats. Figure.savefig would compute it for each, and walk through all artists once more."""
     files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
     figure.set_facecolor("white")
+    fine = fineness(figure)
     with remembered() as forget:
-        figure.set_dpi(plt.rcParams["savefig.dpi"])
+        figure.set_dpi(fine)
         with settled():
             figure.get_layout_engine().execute(figure)
         figure.set_layout_engine("none")
         for path in files:
-            figure.set_dpi(plt.rcParams["savefig.dpi"])  # an SVG leaves its own
+            figure.set_dpi(fine)  # an SVG leaves its own
             PRINTED[path.suffix](figure, path)
             forget()
     return files
@@ -172,7 +181,7 @@ def print_png(figure, path):
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     pixels = np.asarray(canvas.buffer_rgba())
-    (all_colours(pixels) if has_field(figure) else few_colours(pixels)).save(path, format="PNG", compress_level=4)
+    (all_colours(pixels) if has_field(figure) else few_colours(pixels)).save(path, format="PNG", compress_level=3)
 
 
 def has_field(figure):

@@ -30,8 +30,10 @@ def with_halves(places):
 def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, white=0):
     """A field over the unwrapped film. One that jumps has no contours where the film is ruptured. Nodes that are not `known` are left
     blank. Colours of both signs are even about what is `white`."""
+    jumps = jumps and film.region.any()
+    known = None if known is None or known.all() else known
     low, high = values.min(), values.max()
-    if known is not None and not known.all():
+    if known is not None:
         low, high = values[known].min(), values[known].max()
     span = high - low
     same = span <= 1e-9 * max(abs(low), abs(high))  # rounding is no shape
@@ -48,18 +50,19 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, 
         # Straight between the nodes, as an image: as many quadrilaterals take ten times as long.
         mesh = axis.imshow(nodes, extent=(*with_halves(around), *with_halves(along)), origin="lower", aspect="auto", interpolation="bilinear", **colours)
         axis.set(xlim=around[[0, -1]], ylim=along[[0, -1]])
-        region, shown, middles = np.zeros(nodes.shape, int), np.ma.masked_invalid(nodes), (around, along)
+        region, shown, middles = np.zeros(nodes.shape, int), nodes, (around, along)
     else:
         theta, z, shown, region = film.fine(values, jumps)
         theta, z = np.degrees(theta), z * 1e3
-        if known is not None and not known.all():
+        if known is not None:
             _, _, share, _ = film.fine(known.astype(float), jumps)
             shown = np.ma.masked_where(share < 1, shown)
         mesh = axis.pcolorfast(theta, z, shown, **colours)
         middles = (theta[1:] + theta[:-1]) / 2, (z[1:] + z[:-1]) / 2
-    for part in np.unique(region):
-        inside = np.ma.masked_where(region != part, shown)
-        if inside.mask.all():
+    parts = np.unique(region)
+    for part in parts:
+        inside = shown if len(parts) == 1 and not np.ma.is_masked(shown) else np.ma.masked_where(region != part, shown)
+        if np.ma.getmaskarray(inside).all():
             continue
         here = levels[(levels > inside.min()) & (levels < inside.max())]
         if (part != RUPTURED or not jumps) and len(here) and not same:
@@ -82,11 +85,20 @@ def hatch_cavity(axis, film, colour=LIGHT):
         axis.add_collection(PolyCollection(corners, hatch="////", facecolor="none", edgecolor=colour, linewidth=0), autolim=False)
 
 
+def is_lowest(axis):
+    """Whether no panel stands below in the same column."""
+    place = axis.get_subplotspec()
+    return not any(other.get_visible() and other.get_subplotspec().colspan.start == place.colspan.start
+                   and other.get_subplotspec().rowspan.start > place.rowspan.start for other in axis.figure.axes)
+
+
 def mark_regions(axis, film):
     """Hatches the cells around the nodes where the film is ruptured, outlines those that grooves feed, marks orifices, and says
     which way the shaft moves."""
-    axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
-    axis.set_ylabel("z [mm]")
+    if is_lowest(axis):
+        axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
+    if axis.get_subplotspec().is_first_col():
+        axis.set_ylabel("z [mm]")
     first, last = np.degrees(ring(film.theta, film.theta, film.closed)[0][[0, -1]])
     axis.set_xlim(first, last)
     angle_ticks(axis, first, last)
@@ -116,9 +128,12 @@ def regions_in_words(film):
 def figure_of(count):
     """A figure of panels two in a row; those left over are empty."""
     rows, columns = -(-count // 2), min(count, 2)
-    figure, axes = plt.subplots(rows, columns, figsize=(11.2 if columns == 2 else 7.2, 2.9 * rows + 1.0), squeeze=False)
+    figure, axes = plt.subplots(rows, columns, figsize=(11.2 if columns == 2 else 7.2, 2.6 * rows + 1.0), squeeze=False,
+                                sharex=True, sharey=True)
     for axis in axes.flat[count:]:
         axis.set_visible(False)
+    for axis in axes.flat[max(0, count - columns):count]:
+        axis.tick_params(labelbottom=True)
     return figure, axes.flat
 
 
@@ -180,7 +195,7 @@ def draw_velocity(study):
         return []
     around, along = study.get("film/velocity_around"), study.get("film/velocity_along")
     known = film.flow_known
-    figure, axes = plt.subplots(2, 1, figsize=(9.2, 6.8))
+    figure, axes = plt.subplots(2, 1, figsize=(9.2, 6.4), sharex=True)
     drag = 0.5 * (film.speed or 0) * film.radius
     for axis, (title, values, white) in zip(axes, (("circumferential velocity", around, drag), ("axial velocity", along, 0))):
         field(figure, axis, film, values, SIGNED, "velocity [m/s]", GREY, known=known, white=white)
