@@ -25,6 +25,13 @@ def same(h, what, a, b, within=1e-9):
 def pump(h):
     """Seals as elements: pins, map, alignment and place at rest are those of the machine in its two bearings."""
     s, bare = h.run(deck(h, "feed_pump_elements"), "elements", launcher=[]), h.run(deck(h, "feed_pump_bare"), "bare", launcher=[])
+    tables = [t["caption"] for t in s["at speed"]["brief"]["tables"]]
+    h.true("elements without static load have no row", not any(c.startswith("Elements") for c in tables), str(tables))
+    carried = h.run(deck(h, "feed_pump_elements"), "carried", ["elements.drum.static_load=true", "studies=[{static: {name: s, speed: 3000 rpm}}]"], launcher=[])["s"]
+    rows = next(t["rows"] for t in carried["brief"]["tables"] if t["caption"].startswith("Elements"))
+    h.true("one that carries it has", [r[0] for r in rows] == ["drum"], str(rows))
+    h.close("    and the rest of the weight [N]", rows[0][2]["value"], (sum(value(s["at speed"], f"load.{b}") for b in ("DE", "NDE"))
+            - sum(value(carried, f"load.{b}") for b in ("DE", "NDE"))), 1e-6)
     h.close("first mode on pins [Hz], not 388.2", value(s["pinned"], "frequency.1") / HZ, 68.2, 0.05)
     for study, what in (("pinned", "frequency"), ("map", "softest"), ("map", "stiffest"), ("align", "reaction"), ("at speed", "load"), ("at speed", "bearing")):
         keys = [k for k in bare[study]["values"] if k.startswith(what + ".") and "uncertainty" not in k]

@@ -335,7 +335,19 @@ io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySumm
     for (const char* letter : {"K.", "C."})
       for (const char* pair : {"xx", "xy", "yx", "yy"}) row.emplace_back(v[head + letter + pair]);
   }
-  return {{extremes(v)}, {std::move(places), std::move(matrices)}};
+  io::BriefTable elements{"Elements that carry static load",
+                          {{"element"}, {"force x", "N"}, {"force y", "N"}, {"x", "m"}, {"y", "m"}},
+                          {},
+                          "force of the shaft on the element; motion of its node, relative to its other end"};
+  double total = 0;
+  for (const std::string& b : v.between("load.", "")) total += std::abs(v["load." + b].value);
+  for (const std::string& e : v.between("element.", ".force.x")) {
+    const std::string head = "element." + e + ".";
+    constexpr double rounding = 1e-9;  // what carries no static load has forces of rounding
+    if (std::hypot(v[head + "force.x"].value, v[head + "force.y"].value) <= rounding * total) continue;
+    elements.rows.push_back({e, v[head + "force.x"], v[head + "force.y"], v[head + "x"], v[head + "y"]});
+  }
+  return {{extremes(v)}, {std::move(places), std::move(elements), std::move(matrices)}};
 }
 
 }  // namespace whirl::study
