@@ -300,7 +300,8 @@ std::string reference_text(const Structure& structure, std::string_view path, st
     walk(structure, {}, [&](const std::string& key, const Option& o) {
       auto next = asked.begin();
       for (const std::string& step : split_path(key))
-        next += next != asked.end() && (step == *next || (step == "NAME" && next + 1 != asked.end()));
+        next += next != asked.end() &&
+                (step == *next || (step == "NAME" && next != asked.begin() && next + 1 != asked.end()));
       if (next == asked.end()) out += entry_text(key, o);
     });
   // A word of the explanations.

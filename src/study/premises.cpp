@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "whirl/study/linear/unbalance_response.hpp"
 
@@ -35,18 +36,21 @@ std::vector<std::string> table_warnings(const system::Machine& machine, const St
   const bool serves = response && !response->options.operating_speed && machine.service_speed;
   if (serves) speeds.push_back(machine.service_speed->value);
   const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
-  const std::string asked = *least == *most ? fmt::format("the speed {:.6g} rad/s", *least)
-                                            : fmt::format("speeds from {:.6g} to {:.6g} rad/s", *least, *most);
+  const auto both = [](double speed) {
+    return fmt::format("{:.6g} rad/s ({:.6g} rpm)", speed, speed * 30 / std::numbers::pi);
+  };
+  const std::string asked =
+      *least == *most ? "the speed " + both(*least) : fmt::format("speeds from {} to {}", both(*least), both(*most));
   std::vector<std::string> lines;
   const auto known = [&](const std::string& what, double from, double to, bool holds) {
     const double rounding = 1e-9 * to;
     if (*least >= from - rounding && *most <= to + rounding) return;
-    lines.push_back(
-        fmt::format("'{}' asks for {}{}, and the table of {} goes from {:.6g} to {:.6g} rad/s: beyond it {}",
-                    study.name(), asked, serves ? " (service_speed among them)" : "", what, from, to,
-                    holds ? "the coefficients of its nearest end are kept (extrapolate: hold)"
-                          : "there is no answer; 'extrapolate: hold' keeps the coefficients of its nearest "
-                            "end"));
+    lines.push_back(fmt::format("'{}' asks for {}{}, and the table of {} goes from {} to {}: beyond it {}",
+                                study.name(), asked, serves ? " (service_speed among them)" : "", what, both(from),
+                                both(to),
+                                holds ? "the coefficients of its nearest end are kept (extrapolate: hold)"
+                                      : "there is no answer; 'extrapolate: hold' keeps the coefficients of its nearest "
+                                        "end"));
   };
   for (const system::Bearing& b : machine.bearings) {
     const film::Facts film = film::facts(b.film);
