@@ -8,6 +8,7 @@ import time
 
 from . import __main__ as plot
 from . import brief, style, sweep_tables, tables
+from .campbell import EITHER
 from .manifest import register
 from .subject import Drawn, results_directory, said_in_a_sentence
 from .units import digits, person, scale_of, with_bar
@@ -86,7 +87,7 @@ def numeric(cell):
 
 def marked(cell, verdict=False):
     """A table cell. A bad verdict is red. In the rows of a sweep the verdict is a whole sentence."""
-    bad = sweep_tables.has_unstable(str(cell)) if verdict else re.match(r"no$|unstable\b", str(cell))
+    bad = verdict and sweep_tables.has_unstable(str(cell)) or re.match(r"no$|unstable\b|too near\b|diverges\b", str(cell), re.IGNORECASE)
     return f"<span class=bad>{escape(cell)}</span>" if bad else escape(cell)
 
 
@@ -130,7 +131,7 @@ def all_values(study):
     modes = [[digits(m.get("speed"), 6), digits(m.get("mode"), 4), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4),
               digits(m.get("damping_ratio"), 4), m.get("whirl") or "", m.get("stability") or ""] for m in study.modes]
     out.append(tables.Table("All modes", ["speed", "mode", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "damping ratio", "whirl", ""], modes,
-                            tables.EITHER if any(m.get("whirl") == "either" for m in study.modes) else ""))
+                            EITHER if any(m.get("whirl") == "either" for m in study.modes) else ""))
     if study.kind == "sweep":
         out += sweep_tables.everything(study, tables.Table)
     return [show(t, folded=True) for t in out if t.rows]

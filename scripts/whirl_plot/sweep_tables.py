@@ -97,7 +97,7 @@ def verdicts_of(study):
 
 def has_unstable(words):
     """Whether the words of a verdict tell of a machine that is unstable somewhere."""
-    return bool(re.search(r"\bunstable\b|\bloses stability\b", words))
+    return bool(re.search(r"\bunstable\b|\bloses stability\b", words, re.IGNORECASE))
 
 
 def table_of_columns(study, caption, columns, table):

@@ -6,11 +6,7 @@ import numpy as np
 
 from . import sweep_tables
 from .bifurcation import Followed
-from .campbell import EITHER
 from .locus import WORDS as LOCUS_WORDS
-from .margins import MARGIN_HEAD, NOT_EXCITED, margin_cells, margin_note, operating_in
-from .response import number, peaks_at
-from .style import speed_axis
 from .units import WORDS, digits, number as number_of, person, quantity, scale_of, with_bar
 
 
@@ -19,110 +15,6 @@ class Table(typing.NamedTuple):
     head: list
     rows: list
     note: str = ""
-
-
-def column(values, unit):
-    """Factor and head of a column of SI values in the one unit that suits the largest."""
-    finite = [abs(v) for v in values if v is not None and math.isfinite(v)]
-    factor, name = scale_of(unit, max(finite, default=0.0))
-    return factor, f" [{name}]" if name else ""
-
-
-def table_of(caption, labels, columns, note="", one_unit=False):
-    """A table with one row per label and columns (head, SI unit, values), all in one unit if asked; columns without a value are
-    left out."""
-    head, cells = [""], [[label] for label in labels]
-    for words, unit, values in columns:
-        if not any(v is not None for v in values):
-            continue
-        factor, shown = column([v for _, _, some in columns for v in some] if one_unit else values, unit)
-        head.append(words + shown)
-        for row, value in zip(cells, values):
-            row.append("\u2013" if value is None else digits(value * factor, 4))
-    return Table(caption, head, cells, note) if len(head) > 1 and cells else None
-
-
-def modes(study):
-    out, unit = [], study.attribute("speed_unit", "rad/s")
-    to_speed, _, to_frequency, frequency_unit = speed_axis(unit)
-    if study.has("critical/speed"):
-        operating, verdicts, whirls = operating_in(study), study.get("critical/verdict"), study.get("critical/whirl")
-        rows, damped, states = [], [], study.get("critical/stability")
-        for k, (speed, mode) in enumerate(zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/mode")))):
-            found = [study.values.get(f"critical.{k + 1}.{name}") for name in ("speed", "log_decrement", "amplification_factor", "separation_margin", "required_margin")]
-            speed_at, delta, factor, *margin = [(None, None) if v is None else (v.value, v.uncertainty) for v in found]
-            verdict = "" if verdicts is None else str(np.atleast_1d(verdicts)[k])
-            whirl = "\u2013" if whirls is None else str(np.atleast_1d(whirls)[k]) or "\u2013"
-            row = [k + 1, digits(float(speed * to_speed), 5) if speed_at[0] is None else with_bar(*speed_at), int(mode), whirl, with_bar(*delta), with_bar(*factor)]
-            row += margin_cells(*margin, verdict) if operating else []
-            if states is not None and any(str(s) != "stable" for s in states):
-                row.append("" if str(states[k]) == "stable" else str(states[k]))
-            (damped if verdict.startswith("damped") else rows).append(row)
-        head = ["critical", f"speed [{unit}]", "mode", "whirl", "log. decrement \u03b4", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
-        head += [""] * (max(map(len, rows + damped), default=0) - len(head))
-        note = margin_note(operating, unit) if operating else ""
-        note += f"; {NOT_EXCITED}" if "not excited" in np.atleast_1d([] if verdicts is None else verdicts) else ""
-        out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
-        if damped:
-            out.append(Table("Damped, not critical: amplification factor below 2.5 (API 684)", head, damped))
-    if study.has("spectrum/speed", "spectrum/log_decrement"):
-        names = ["mode", "frequency", "log_decrement", "damping_ratio", "whirl", "stability"]
-        rows = {k: study.get(f"spectrum/{k}") for k in ("speed", *names)}
-        count = len(rows["speed"])
-        rows = {k: [None] * count if v is None else v for k, v in rows.items()}
-        shown = lambda v, n: "\u2013" if v is None or not math.isfinite(v) else digits(float(v), n)  # noqa: E731
-        out.append(Table(f"Modes at {digits(float(rows['speed'][-1] * to_speed), 5)} {unit}",
-                         ["mode", f"frequency [{frequency_unit}]", "log. decrement", "damping ratio", "whirl", ""],
-                         [[int(m), digits(float(f * to_frequency), 5), shown(d, 3), shown(z, 3), str(w), "" if s in (None, "stable") else str(s)]
-                          for speed, m, f, d, z, w, s in zip(rows["speed"], *(rows[k] for k in names)) if speed == rows["speed"][-1]],
-                         EITHER if "either" in [w for speed, w in zip(rows["speed"], rows["whirl"]) if speed == rows["speed"][-1]] else ""))
-    if study.has("unstable/from"):
-        columns = [np.atleast_1d(study.get(f"unstable/{k}")) for k in ("from", "to", "mode", "whirl", "frequency")]
-        if len(columns[0]):
-            out.append(Table("Unstable speeds", [f"from [{unit}]", f"to [{unit}]", "mode", "whirl", f"frequency [{frequency_unit}]"],
-                             [[digits(float(a * to_speed), 5), digits(float(b * to_speed), 5), int(m), str(w), digits(float(f * to_frequency), 5)]
-                              for a, b, m, w, f in zip(*columns)], "a range that begins or ends with the speeds of the study may go on"))
-    elif study.modes:
-        out.append(Table("Natural frequencies at rest", ["mode", "frequency [Hz]"],
-                         [[k, digits(m["imag"] / (2 * math.pi), 5)] for k, m in enumerate(study.modes, 1) if m.get("imag") is not None]))
-    return out
-
-
-def cell(peak, name, factor=1):
-    """A value of a peak with its bar; a dash where there is none."""
-    size, bar = number(peak, name), (peak.get(name) or {}).get("uncertainty")
-    return with_bar(None if size is None else size * factor, bar * factor if isinstance(bar, (int, float)) else None)
-
-
-def peak_row(peak, operating):
-    margin = margin_cells(*((number(peak, name), (peak.get(name) or {}).get("uncertainty")) for name in ("separation_margin", "required_margin")), peak.get("verdict"))
-    return [cell(peak, "speed"), cell(peak, "semi_major", 1e6), cell(peak, "amplification_factor"), *(margin if operating else []),
-            str(peak.get("stability", "\u2013")), "; ".join(str(n) for n in peak.get("notes", []))]
-
-
-def unbalance_response(study):
-    if not study.has("response/speed"):
-        return []
-    unit = study.attribute("speed_unit", "rad/s")
-    operating, rows = operating_in(study), []
-    for place in dict.fromkeys(str(p.get("place")) for p in study.peaks):
-        rows += [[place if n == 0 else "", *peak_row(p, operating)] for n, p in enumerate(peaks_at(study, place)[:4])]
-    margins_head = MARGIN_HEAD if operating else []
-    head = ["probe", f"peak at [{unit}]", "amplitude [\u00b5m]", "amplification N/(N2 \u2212 N1)", *margins_head, "equilibrium", ""]
-    if rows and not any(r[-1] for r in rows):
-        head, rows = head[:-1], [r[:-1] for r in rows]
-    note = "0-peak, semi-major axis of the orbit; amplification N/(N2 \u2212 N1) at 0.707 of the peak (API 684); a response about an unstable equilibrium is no motion"
-    shown = f"; {margin_note(operating, unit)}" if operating else ""
-    modes = next((s.name for s in study.results.studies if s.kind == "modes" and "critical.1.amplification_factor" in s.values), None)
-    if modes is not None:
-        shown = f"; the factor in {modes} is \u03c0/\u03b4 of the mode at fixed speed, and differs from this one where the frequency of the mode changes with the speed{shown}"
-    out = [Table("Peaks of the response, the four largest of each probe", head, rows, note + shown)] if rows else []
-    at = {k.removeprefix("operating."): v for k, v in study.values.items() if k.startswith("operating.")}
-    if at:
-        words = {k: k.replace("node.", "node ").replace("bearing.", "").replace(".semi_major", "").replace(".", ", ") for k in at}
-        out.append(Table("At the operating speed" + (f", {digits(operating[0], 5)} {unit}" if operating and operating[0] == operating[1] else ""),
-                         ["place", "amplitude 0-peak"], [[words[k], person(v.value, v.unit, 4)] for k, v in at.items()]))
-    return out
 
 
 KINDS = {"hopf": "Hopf point: whirl sets in", "fold": "limit point", "cyclic_fold": "limit point of cycles: the motion jumps",
@@ -267,7 +159,7 @@ def sweep(study):
     return sweep_tables.tables(study, Table)
 
 
-FINDINGS = {"modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch,
+FINDINGS = {"equilibrium_branch": branch,
             "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus, "sweep": sweep}
 
 

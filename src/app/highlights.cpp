@@ -82,8 +82,6 @@ std::string of_sweep(const io::StudySummary& s, std::span<const io::StudySummary
 
 std::string highlights(const io::StudySummary& s, std::span<const io::StudySummary> before) {
   const Values v(s);
-  if (s.kind == "modes") return of_modes(s, v);
-  if (s.kind == "unbalance_response") return of_response(s, before);
   if (s.kind == "equilibrium_branch") return of_equilibria(s, v);
   if (s.kind == "cycle_branch") return of_cycles(s, v);
   if (s.kind == "run_up") return of_run_up(s, v);

@@ -52,7 +52,11 @@ Scale scale_of(const std::string& unit, double size) {
 std::string digits(double value, int count) {
   if (value == 0) return "0";
   const double size = std::abs(value);
-  if (size < 1e-4 || size >= 1e7) return fmt::format("{:.{}e}", value, count - 1);
+  if (size < 1e-4 || size >= 1e7) {
+    const std::string text = fmt::format("{:.{}e}", value, count - 1);
+    const std::size_t power = text.find('e'), last = text.find_last_not_of('0', power - 1);
+    return text.substr(0, text[last] == '.' ? last : last + 1) + text.substr(power);
+  }
   const int places = std::max(0, count - 1 - static_cast<int>(std::floor(std::log10(size))));
   std::string text = fmt::format("{:.{}f}", value, places);
   if (places > 0) {

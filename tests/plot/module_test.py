@@ -286,10 +286,6 @@ def facts():
     # Limits at one place would be warned of on the screen.
     from whirl_plot.style import span_of
     assert span_of(1.0, 2.0) == (1.0, 2.0) and all(a < b for a, b in (span_of(0.0, 0.0), span_of(-3.0, -3.0), span_of(2.0, 2.0)))
-    from whirl_plot.margins import margin_cells
-    assert margin_cells((0.1, 0.002), (0.12, None), "too near") == ["10.00 \u00b1 0.20", "12", "no"]
-    assert margin_cells((0.2, None), (0.0, None), "damped, not critical") == ["20", "none", "damped"]
-    assert margin_cells((None, None), (None, None), "") == ["\u2013", "\u2013", "\u2013"]
     assert not response.is_answer({"notes": ["undetermined: it stands 0.1 um above"]})
     from whirl_plot.tables import stiffness_of
     assert stiffness_of({"stiffness": ["6e6 N/m", "1 N/m", "0 N/m", "6e6 N/m"], "cross_coupling": "2500000 N/m"}) == ["6000000 N/m", "2500001 N/m", "-2500000 N/m", "6000000 N/m"]

@@ -70,56 +70,22 @@ def sentences(folder):
         assert "stable again from 6000 to 8000 rpm" in brief.of(study), brief.of(study)
 
 
-def modes(folder):
-    """A computed speed is no threshold; margins are those of summary.json."""
-    with results_with(folder, lambda *_: None) as results:
-        words = brief.of(results["modes"])
-        speed, decrement = (results["modes"].get(f"spectrum/{k}") for k in ("speed", "log_decrement"))
-        high = speed[decrement < 0].min() / RPM
-        low = max(s for s in np.unique(speed) / RPM if s < high - 1e-6)
-        assert f"becomes unstable between {low:.5g} and {high:.5g} rpm" in words, words
-        assert len(table_of(results["modes"], "Critical speeds: damped frequency equal to the speed").head) == 6
-
-    def undamped(root):
-        root["studies/modes/spectrum/log_decrement"][...] = 0
-    with results_with(folder, lambda *_: None, undamped) as results:
-        assert brief.of(results["modes"]) == "undamped"
-
+def answers(folder):
+    """Sentences and tables of a brief stand in the page as summary.json has them, bad verdicts in red."""
     def told(studies, _):
-        studies["modes"]["values"] = {
-            "critical.1.speed": {"value": 689.4, "unit": "rpm", "uncertainty": 1.5}, "critical.1.log_decrement": {"value": 0.2, "unit": "1"},
-            "critical.1.separation_margin": {"value": 0.12, "unit": "1"}, "critical.1.required_margin": {"value": 0.16, "unit": "1"},
-            "operating_speed": {"value": 3600, "unit": "rpm"}, "threshold": {"value": 5022.2, "unit": "rpm", "uncertainty": 3.1}}
-
-    def verdicts(root):
-        root["studies/modes/critical"].create_dataset("verdict", data=["too near", "far enough", "damped, not critical", "", "far enough"])
-        root["studies/modes/critical"].create_dataset("whirl", data=["backward", "forward", "mixed", "forward", "planar"])
-    with results_with(folder, told, verdicts) as results:
-        critical = table_of(results["modes"], "Critical speeds: damped frequency equal to the speed")
-        assert critical.rows[0][:4] == [1, "689.4 \u00b1 1.5", 1, "backward"] and critical.rows[0][-3:] == ["12", "16", "no"], critical.rows[0]
-        assert [r[2] for r in table_of(results["modes"], "Damped, not critical: amplification factor below 2.5 (API 684)").rows] == [3]
-        assert "unstable from 5022.2 \u00b1 3.1 rpm" in brief.of(results["modes"])
-
-
-def responses(folder):
-    """The peaks are those of the list in summary.json, in its order; those about unstable equilibria are named only where there is no other."""
-    with results_with(folder, lambda *_: None) as results:
-        study = results["generator pair"]
-        table = table_of(study, "Peaks of the response, the four largest of each probe")
-        assert table.head == ["probe", "peak at [rpm]", "amplitude [\u00b5m]", "amplification N/(N2 \u2212 N1)", "margin [%]", "required [%]", "enough", "equilibrium", ""], table.head
-        assert table.rows == [
-            ["node 120", "2683.00 \u00b1 0.10", "75.00 \u00b1 0.20", "12.40 \u00b1 0.20", "25.5", "16", "yes", "stable", ""],
-            ["", "5120.00 \u00b1 0.10", "91.00 \u00b1 0.20", "\u2013", "42", "16", "\u2013", "unstable", "no amplification factor: the range ends"],
-            ["B3, journal", "2690.00 \u00b1 0.10", "30.00 \u00b1 0.20", "11.90 \u00b1 0.20", "25", "16", "yes", "stable", ""]], table.rows
-        assert "operating speed 3600 rpm" in table.note, table.note
-        assert brief.of(study) == "largest peak 75 \u00b5m at node 120, 2683 rpm, amplification 12.4", brief.of(study)
-
-    def unstable(studies, _):
-        studies["generator pair"]["stability"] = "unstable throughout"
-        for p in studies["generator pair"]["peaks"]:
-            p["stability"] = "unstable"
-    with results_with(folder, unstable) as results:
-        assert brief.of(results["generator pair"]) == "unstable throughout; 2 peaks, none of which is a motion of the machine"
+        studies["modes"]["brief"] = {"sentences": ["critical speed with an amplification above 2.5: 689.4 +- 1.5 rpm"], "tables": [
+            {"caption": "Critical speeds", "note": "margin to the operating speed 3600 rpm",
+             "columns": [{"name": n, "unit": u, "shown": u if u != "1" else "", "factor": 1} for n, u in (("no.", ""), ("speed", "rpm"), ("AF", "1"), ("verdict", ""))],
+             "rows": [["1", {"value": 689.4, "unit": "rpm", "uncertainty": 1.5, "text": "689.4 +- 1.5"}, {"value": 15.7, "unit": "1", "text": "15.7"}, "TOO NEAR"],
+                      ["2", {"value": 5100.0, "unit": "rpm", "text": "5100"}, None, "UNSTABLE"]]}]}
+    with results_with(folder, told) as results:
+        study = results["modes"]
+        table, page = table_of(study, "Critical speeds"), report.page_of(results)
+        assert table.head == ["no.", "speed [rpm]", "AF", "verdict"] and table.note.endswith("3600 rpm"), table
+        assert table.rows == [["1", "689.4 \u00b1 1.5", "15.7", "TOO NEAR"], ["2", "5100", "\u2013", "UNSTABLE"]], table.rows
+        assert "above 2.5: 689.4" in brief.of(study) and study.answer.tables[0].column("speed")[0] == 689.4
+        assert all(f"<span class=bad>{mark}</span>" in page for mark in ("TOO NEAR", "UNSTABLE")), page
+        assert brief.of(results["generator pair"]) == "", "results without a brief say nothing"
 
 
 def service(folder):
@@ -277,7 +243,7 @@ def page(folder):
         assert words in text, words
 
 
-for check in (verdicts, sentences, modes, responses, service, sweep, others_in_brief, options, warnings, foreign, page):
+for check in (verdicts, sentences, answers, service, sweep, others_in_brief, options, warnings, foreign, page):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("the report says what the results say")

@@ -9,8 +9,10 @@
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/common.hpp"
+#include "study/linear/linear_brief.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/deck/units.hpp"
 #include "whirl/rotor/critical_speeds.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -76,6 +78,38 @@ double bar_between(const std::vector<std::size_t>& known, const std::vector<std:
   return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b);
 }
 
+// Rows of the table that a person reads: both ends, and some between them, evenly spaced.
+std::vector<std::size_t> shown_of(std::size_t points) {
+  constexpr std::size_t most = 8;
+  std::vector<std::size_t> out;
+  const std::size_t n = std::min(most, points);
+  for (std::size_t k = 0; k < n; ++k) out.push_back(k * (points - 1) / (n - 1));
+  return out;
+}
+
+// "the lowest critical speed of forward whirl rises from 120.3 rpm at 1 kN/m to 4567 rpm at 10 GN/m", and how steeply
+// at both ends.
+std::string course(const std::vector<double>& stiffness, const std::vector<double>& speeds, std::size_t count,
+                   const char* whirl) {
+  const std::size_t last = stiffness.size() - 1;
+  const auto speed = [&](std::size_t i) { return speeds[i * count]; };
+  if (!std::isfinite(speed(0)) || !std::isfinite(speed(last))) return {};
+  const auto shown = [&](std::size_t i) {
+    return fmt::format("{} rpm at {}", io::reading(deck::from_si(speed(i), "rpm")), io::reading({stiffness[i], "N/m"}));
+  };
+  const auto power = [&](std::size_t i) {
+    return std::log(speed(i + 1) / speed(i)) / std::log(stiffness[i + 1] / stiffness[i]);
+  };
+  const double soft = power(0), stiff = power(last - 1);
+  std::string text = fmt::format("the lowest critical speed of {} whirl: {}, {}", whirl, shown(0), shown(last));
+  if (std::isfinite(soft) && std::isfinite(stiff))
+    text += fmt::format(
+        "; it rises with the power {:.2f} of the stiffness at the soft end and {:.2f} at the stiff end (0.5: a rigid "
+        "rotor on springs; 0: the springs no longer matter)",
+        soft, std::abs(stiff));
+  return text;
+}
+
 }  // namespace
 
 StudyResult CriticalSpeedMap::run(Context& context) {
@@ -132,6 +166,37 @@ StudyResult CriticalSpeedMap::run(Context& context) {
   table.label_each({io::numbered(count, "critical")});
   results.summary().points = static_cast<long>(points);
   return results.finish("completed", true);
+}
+
+io::Brief CriticalSpeedMap::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  if (!result.delivered || !result.group.has_group("map")) return {};
+  const io::Group& map = result.group.group("map");
+  const std::vector<double>& stiffness = map.reals("stiffness");
+  const auto count = static_cast<std::size_t>(options.count);
+  io::Brief out;
+  for (const char* whirl : whirl_names) {
+    const std::vector<double>& speeds = map.reals(whirl);
+    const std::string bars = fmt::format("{}_uncertainty", whirl);
+    io::BriefTable table{fmt::format("Undamped critical speeds of {} whirl", whirl),
+                         {{"stiffness"}},
+                         {},
+                         "equal springs in x and y at all supports, on their pedestals; no damping, no films"};
+    for (std::size_t k = 0; k < count; ++k) table.columns.push_back({fmt::format("no. {}", k + 1), "rpm"});
+    for (const std::size_t i : shown_of(stiffness.size())) {
+      auto& row = table.rows.emplace_back();
+      row.emplace_back(to_digits({stiffness[i], "N/m"}, 4));
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t at = i * count + k;
+        io::Quantity q{speeds[at], "rad/s"};
+        if (map.has_dataset(bars)) q.more["uncertainty"] = map.reals(bars)[at];
+        row.emplace_back(scaled(q, deck::from_si(1, "rpm"), "rpm"));
+      }
+    }
+    out.sentences.push_back(course(stiffness, speeds, count, whirl));
+    out.tables.push_back(std::move(table));
+  }
+  if (!out.sentences.front().empty()) out.sentences.resize(1);
+  return out;
 }
 
 }  // namespace whirl::study

@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
+#include "study/linear/linear_brief.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/agree.hpp"
@@ -113,6 +115,25 @@ double order(double coarse, double middle, double fine, double ratio) {
   return std::isfinite(p) ? p : io::no_value;
 }
 
+std::string name_of(rotor::Element element) {
+  for (const auto& n : rotor::names(element))
+    if (n.value == element) return std::string(n.name);
+  return {};
+}
+
+// The largest finite one; not a number if there is none.
+double largest(const std::vector<double>& values) {
+  double most = io::no_value;
+  for (const double v : values)
+    if (std::isfinite(v) && !(std::abs(v) <= most)) most = std::abs(v);
+  return most;
+}
+
+// A part of one in percent, of three digits.
+io::Quantity percent(double part) {
+  return to_digits({100 * part, "%"}, 3);
+}
+
 }  // namespace
 
 StudyResult ElementConvergence::run(Context& context) {
@@ -158,9 +179,7 @@ StudyResult ElementConvergence::run(Context& context) {
   group.set("speed", options.speed.value);
   for (std::size_t e = 0; e < all.size(); ++e) {
     const std::vector<Found>& of = all[e];
-    std::string name;
-    for (const auto& n : rotor::names(options.elements[e]))
-      if (n.value == options.elements[e]) name = n.name;
+    const std::string name = name_of(options.elements[e]);
     auto& table = group.child("convergence").child(name);
     table.set("place", static_cast<int>(e));
     std::vector<double> elements, frequency, forward, error, shift, columns[3];
@@ -209,6 +228,84 @@ StudyResult ElementConvergence::run(Context& context) {
   }
   summary.points = static_cast<long>(packed.size());
   return results.finish("completed", true);
+}
+
+io::Brief ElementConvergence::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  if (!result.delivered || !result.group.has_group("convergence")) return {};
+  const io::Group& all = result.group.group("convergence");
+  const Values v(result.summary);
+  const auto count = static_cast<std::size_t>(options.count), meshes = options.parts.size();
+  io::Brief out;
+  io::BriefTable finest{"Whirl frequencies on the finest mesh", {{"mode"}}, {}, "bar: distance from the mesh before"},
+      orders{"Order of convergence, by the last three meshes", {{"mode"}}, {}, {}},
+      errors{"Largest distance of a frequency from the finest mesh", {{"elements"}}, {}, {}},
+      conditions{"Condition numbers on the finest mesh",
+                 {{"element"},
+                  {"vectors", "1"},
+                  {"power (v)", "1"},
+                  {"stiffness", "1"},
+                  {"power (s)", "1"},
+                  {"mass", "1"},
+                  {"power (m)", "1"}},
+                 {},
+                 "2-norm, in the scales of the states; power: with which they rise over the number of elements, from "
+                 "the mesh before"};
+  finest.rows.resize(count);
+  orders.rows.resize(count);
+  errors.rows.resize(meshes - 1);
+  for (std::size_t k = 0; k < count; ++k) {
+    finest.rows[k].emplace_back(std::to_string(k + 1));
+    orders.rows[k].emplace_back(std::to_string(k + 1));
+  }
+  const std::string first = name_of(options.elements.front());
+  for (const rotor::Element element : options.elements) {
+    const std::string name = name_of(element);
+    const io::Group& table = all.group(name);
+    const std::vector<double>&n = table.reals("elements"), &error = table.reals("error");
+    finest.columns.push_back({name, "Hz"});
+    orders.columns.push_back({name, "1"});
+    errors.columns.push_back({name, "%"});
+    if (name != first) finest.columns.push_back({"shift", "%"});
+    std::vector<double> bars, shifts;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::string mode = std::to_string(k + 1);
+      const io::Quantity f = v[name + ".frequency." + mode], order = v[name + ".order." + mode],
+                         shift = v[name + ".shift." + mode];
+      finest.rows[k].emplace_back(scaled(f, 1 / (2 * std::numbers::pi), "Hz"));
+      if (name != first) finest.rows[k].emplace_back(percent(shift.value));
+      orders.rows[k].emplace_back(to_digits(order, 3));
+      bars.push_back(f.bar() / f.value);
+      shifts.push_back(shift.value);
+    }
+    for (std::size_t m = 0; m + 1 < meshes; ++m) {
+      if (errors.rows[m].empty()) errors.rows[m].emplace_back(fmt::format("{:.0f}", n[m]));
+      const auto at = error.begin() + static_cast<std::ptrdiff_t>(m * count);
+      errors.rows[m].emplace_back(percent(largest({at, at + static_cast<std::ptrdiff_t>(count)})));
+    }
+    if (const double worst = largest(bars); std::isfinite(worst))
+      out.sentences.push_back(
+          fmt::format("{}: from {:.0f} to {:.0f} elements the {} lowest whirl frequencies move by at most {}", name,
+                      n[meshes - 2], n.back(), count, io::reading(percent(worst))));
+    if (const double most = largest(shifts); name != first && std::isfinite(most))
+      out.sentences.back() +=
+          fmt::format("; they differ from those of {} by at most {}", first, io::reading(percent(most)));
+    if (!options.condition) continue;
+    auto& row = conditions.rows.emplace_back();
+    row.emplace_back(name);
+    for (const char* column : {"condition_vectors", "condition_stiffness", "condition_mass"}) {
+      const std::vector<double>& c = table.reals(column);
+      row.emplace_back(to_digits({c.back(), "1"}, 3));
+      row.emplace_back(to_digits({std::log(c.back() / c[meshes - 2]) / std::log(n.back() / n[meshes - 2]), "1"}, 3));
+    }
+  }
+  out.tables = {std::move(finest), std::move(orders), std::move(errors), std::move(conditions)};
+  // Of meshes whose numbers have no constant ratio nothing is known of the order.
+  std::erase_if(out.tables, [](const io::BriefTable& t) {
+    return std::ranges::none_of(t.rows, [](const auto& row) {
+      return std::any_of(row.begin() + 1, row.end(), [](const io::BriefCell& c) { return c.is_number(); });
+    });
+  });
+  return out;
 }
 
 }  // namespace whirl::study

@@ -10,6 +10,7 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/linear/compared_modes.hpp"
+#include "study/linear/linear_brief.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/codecs.hpp"
@@ -260,6 +261,52 @@ private:
 
 StudyResult ReductionErrors::run(Context& context) {
   return Comparison(context, options).run();
+}
+
+io::Brief ReductionErrors::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  if (!result.delivered || result.summary.values.empty()) return {};
+  const auto table = [&](std::string caption, const std::vector<int>& sizes, const std::string& head,
+                         const std::string& tail, std::string note) {
+    io::BriefTable out{std::move(caption), {{"freedoms"}}, {}, std::move(note)};
+    for (const ReductionMethod method : options.methods) out.columns.push_back({name_of(method), "%"});
+    for (const int kept : sizes) {
+      auto& row = out.rows.emplace_back();
+      row.emplace_back(std::to_string(kept));
+      for (const ReductionMethod method : options.methods) {
+        const io::Quantity q = v[fmt::format("{}{}.{}.{}", head, name_of(method), kept, tail)];
+        row.push_back(std::isnan(q.value) ? io::BriefCell("no answer")
+                                          : io::BriefCell(to_digits(scaled(q, 100, "%"), 3)));
+      }
+    }
+    return out;
+  };
+  io::Brief out;
+  // The smallest shaft from which on all larger ones keep every frequency.
+  constexpr double wanted = 1e-3;
+  std::vector<std::string> enough;
+  for (const ReductionMethod method : options.methods) {
+    int least = 0;
+    std::vector<int> sizes = options.freedoms;
+    std::ranges::sort(sizes, std::greater{});
+    for (const int kept : sizes) {
+      if (!(v[fmt::format("{}.{}.frequency_error", name_of(method), kept)].value < wanted)) break;
+      least = kept;
+    }
+    enough.push_back(fmt::format("{} {}", name_of(method), least > 0 ? std::to_string(least) : "more than tried"));
+  }
+  out.sentences.push_back(
+      fmt::format("freedoms that keep the {} lowest whirl frequencies to 0.1 %: {}", options.count, in_words(enough)));
+  out.tables.push_back(table(fmt::format("Largest error of the {} lowest whirl frequencies", options.count),
+                             options.freedoms, "", "frequency_error", "against the whole shaft"));
+  out.tables.push_back(table("Largest error of their eigenvectors", options.freedoms, "", "vector_error",
+                             "distance of vectors of length one in the energy norm; 100 %: as far apart as can be"));
+  if (options.orbits)
+    out.tables.push_back(
+        table(fmt::format("Orbits of node {} from rest under the unbalance", options.orbits->node),
+              options.orbits->freedoms, "orbit.", "error",
+              fmt::format("largest distance, of the size of the orbit, {}", io::reading(v["orbit.size"]))));
+  return out;
 }
 
 }  // namespace whirl::study
