@@ -1,5 +1,4 @@
 """What each study found, in a sentence or two."""
-from . import sweep_tables
 from .bifurcation import Followed
 from .locus import WORDS as LOCUS_WORDS
 from .units import WORDS, digits, person, with_bar
@@ -71,12 +70,7 @@ def run_up(study):
     return [f"largest vibration {person(top, 'm', 3)} at {place}" + (f", {digits(at.value, 4)} {at.unit}" if at else "")]
 
 
-def sweep(study):
-    return sweep_tables.brief(study)
-
-
-KINDS = {"equilibrium_branch": branch, "cycle_branch": branch, "motion": motion,
-         "locus": locus, "run_up": run_up, "sweep": sweep}
+KINDS = {"equilibrium_branch": branch, "cycle_branch": branch, "motion": motion, "locus": locus, "run_up": run_up}
 
 
 def of(study):

@@ -4,10 +4,9 @@ import typing
 
 import numpy as np
 
-from . import sweep_tables
 from .bifurcation import Followed
 from .locus import WORDS as LOCUS_WORDS
-from .units import WORDS, digits, number as number_of, person, quantity, scale_of, with_bar
+from .units import WORDS, digits, number as number_of, person, quantity, with_bar
 
 
 class Table(typing.NamedTuple):
@@ -155,12 +154,7 @@ def locus(study):
                   rows)] if rows else []
 
 
-def sweep(study):
-    return sweep_tables.tables(study, Table)
-
-
-FINDINGS = {"equilibrium_branch": branch,
-            "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus, "sweep": sweep}
+FINDINGS = {"equilibrium_branch": branch, "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus}
 
 
 def findings(study):

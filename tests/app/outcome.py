@@ -125,17 +125,17 @@ values = dict(zip(("given", "x0.8"), column["values"]))
 if abs(values["given"] - values["x0.8"]) < 1e-3 * values["given"]:
     failures.append(f"the variant moves the threshold: {values}")
 for name, value in values.items():
-    line = next((x for x in text.split("\n") if re.search(f"{name} [*]  .*unstable in part", x)), "")
+    line = next((x for x in text.split("\n") if re.search(f"{name}  .*unstable in part", x)), "")
     if not any(re.fullmatch(r"[0-9.]+", w) and abs(float(w) / value - 1) < 1e-5 for w in line.split()):
         failures.append(f"no row '{name}' with {value} in\n{text}")
-# An undamped row is marked too, and the mark is explained; so are the two factors of one resonance.
+# An undamped row is marked too; the two factors of one resonance are explained.
 nelson, damped = source / "tests" / "app" / "nelson.yaml", "[2000 N s/m, 0 N s/m, 0 N s/m, 2000 N s/m]"
 marks = ["--set", "bars=none", "studies=[{modes: {name: m, speeds: [1000 rpm], count: 2}}, {frequency_response: {name: f, speed: 1000 rpm, range: {from: 1600 rad/s, "
          "to: 1800 rad/s}, points: 3, inputs: [{node: 5, direction: x}], outputs: [{node: 5, direction: x}]}}, {sweep: {name: c, of: [m], grid: {gravity: [x2]}}}]"]
 factors = ["--set", "bars=none", f"bearings.*.film.damping={damped}", "unbalance={u: {planes: [{node: 5, amount: 1 g mm}]}}",
            "studies=[{modes: {name: m, range: {from: 15000 rpm, to: 18000 rpm}, points: 3, count: 2}}, {unbalance_response: {name: r, unbalance: [u], "
            "range: {from: 15000 rpm, to: 19000 rpm}, points: 21, nodes: [5]}}]"]
-for name, words, said in (("marks", marks, "without limit(.|\n)*as given [*]  .*undamped(.|\n)*[*]: not known to be stable[.]"),
+for name, words, said in (("marks", marks, "without limit(.|\n)*as given  .*undamped"),
                           ("factors", factors, r"AF \(3 dB\): N/\(N2 - N1\) of this\s+response\s+at\s+0.707\s+of\s+its\s+peak\s+\(API\s+684\);\s+'m'\s+gives")):
     text, _ = run(nelson, name, *words)
     # A run that goes on says the same of what had ended.

@@ -7,9 +7,11 @@
 
 #include "whirl/study/linear/critical_speed_map.hpp"
 #include "whirl/study/linear/element_convergence.hpp"
+#include "whirl/study/linear/frequency_response.hpp"
 #include "whirl/study/linear/modes.hpp"
 #include "whirl/study/linear/reduction_errors.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
+#include "whirl/study/sweep/sweep.hpp"
 
 namespace whirl::study {
 namespace {
@@ -233,6 +235,64 @@ TEST(ElementConvergenceBrief, SaysHowFarFrequenciesMove) {
   ASSERT_EQ(b.tables.size(), 2) << "no order of two meshes, no condition numbers";
   EXPECT_EQ(texts(b.tables[0].rows[0]), (std::vector<std::string>{"1", "100.0 +- 1.2"}));
   EXPECT_TRUE(brief_of(study, StudyResult{}).tables.empty());
+}
+
+TEST(FrequencyResponseBrief, NamesLargestAnswersAndLimits) {
+  FrequencyResponse study;
+  study.options.constant_at = {{100 * std::numbers::pi, "Hz"}};
+  StudyResult result;
+  io::StudySummary& s = result.summary;
+  s.set("7.x.from.7.x.largest", 2e-6, "m/N");
+  s.set("7.x.from.7.x.largest_at", 60, "Hz");
+  s.set("7.x.from.7.x.relative_error", 0.0123, "1");
+  s.set("7.y.from.7.x.largest", std::numeric_limits<double>::infinity(), "m/N");
+  s.set("7.y.from.7.x.largest_at", 70, "Hz");
+  s.set("constant.1.difference", 0.25, "1");
+  s.set("constant.1.difference_at", 40, "Hz");
+  const io::Brief b = brief_of(study, result);
+  EXPECT_EQ(b.sentences,
+            (std::vector<std::string>{"undamped resonance at 70 Hz: 1 of 2 transfer functions grow without limit there",
+                                      "largest answer 2 um/N: 7 x from 7 x, at 60 Hz"}));
+  ASSERT_EQ(b.tables.size(), 2);
+  EXPECT_EQ(texts(b.tables[0].rows[0]), (std::vector<std::string>{"their coefficients at 50 Hz", "25", "40"}));
+  EXPECT_EQ(b.tables[1].rows[1][1].text, "without limit");
+  EXPECT_TRUE(brief_of(study, StudyResult{}).tables.empty());
+}
+
+// Speeds of a branch in rpm; the deck as given comes first, with the verdict of the study before.
+TEST(SweepBrief, SetsVariantsSideBySide) {
+  Sweep study;
+  StudyResult result;
+  io::StudySummary& s = result.summary;
+  io::StudySummary given, variant;
+  given.name = variant.name = "balanced";
+  given.kind = variant.kind = "equilibrium_branch";
+  given.stability = "stable throughout";
+  variant.ranges = {{500, 4000, "rpm", "stable"}, {4000, 8000, "rpm", "unstable"}};
+  s.variants = {{"x0.8", {}, {variant}}};
+  s.columns = {{"balanced.threshold", "rad/s", {5000 * rpm, 4000 * rpm}, {12 * rpm, 9 * rpm}},
+               {"balanced.hopf.1", "rpm", {5000, 4000}, {12, 9}},
+               {"balanced.load.B1", "N", {100, 200}, {io::no_value, io::no_value}}};
+  s.trends = {{"balanced.threshold",
+               "bearings.*.geometry.clearance",
+               "um",
+               "",
+               "+",
+               {"x0.8", "as given"},
+               {160, 200},
+               {1000 * rpm},
+               {21 * rpm}}};
+  io::Brief b = study.brief(result, std::vector{given});
+  io::typeset(b);
+  EXPECT_EQ(b.sentences, (std::vector<std::string>{"1 variant over clearance", "unstable, at least in part: x0.8",
+                                                   "threshold rises from 4000.0 +- 9.0 rpm to 5000 +- 12 rpm"}));
+  ASSERT_EQ(b.tables.size(), 2);
+  EXPECT_EQ(texts(b.tables[0].rows[0]), (std::vector<std::string>{"as given", "stable", "5000 +- 12", "100"}));
+  EXPECT_EQ(texts(b.tables[0].rows[1]), (std::vector<std::string>{"x0.8", "unstable in part", "4000.0 +- 9.0", "200"}));
+  EXPECT_TRUE(b.tables[0].note.ends_with("x0.8: stable 500 to 4000, unstable to 8000 rpm")) << b.tables[0].note;
+  EXPECT_EQ(texts(b.tables[1].rows[0]),
+            (std::vector<std::string>{"threshold", "clearance", "160 um", "200 um", "rises", "1000 +- 21 rpm"}));
+  EXPECT_TRUE(brief_of(study, StudyResult{}).sentences.empty());
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ public:
   /// What the dearest study of a variant takes, and what is kept of each variant until the end. One variant at a time.
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
+  [[nodiscard]] io::Brief brief(const StudyResult& result, std::span<const io::StudySummary> before) const override;
 
   /// Makes and checks the deck of each variant from the tree of the whole one; `before` are the studies before this
   /// one. Problems cite the line of the sweep and the variant. Solves nothing. Collective (tables).
