@@ -192,6 +192,8 @@ def draw(study):
                   pad=6 + (12 + 9 * max(levels(critical, ends[1] - ends[0], 0.045), default=0)) * bool(len(critical)))
     handles = [Line2D([], [], color=GOOD, label=f"log. decrement \u2265 {LOW_DAMPING}"),
                Line2D([], [], color=WARN, label=f"0 to {LOW_DAMPING}"), Line2D([], [], color=BAD, label="unstable")]
+    if not damped_at_all:
+        handles = []
     if any(np.any(m[3] == 0) for m in modes):
         handles.append(Line2D([], [], color=UNDAMPED, label="undamped"))
     if any(np.any(m[3] > OVERDAMPED) for m in modes):

@@ -5,6 +5,7 @@ from matplotlib.ticker import MaxNLocator
 from .canvas import plt
 from .style import BAD, COLOURS, GREY, INK, ON_PRESSURE, PRESSURE, least_span, save
 from .thd_maps import angle_ticks
+from .units import digits
 
 CURVES = (("load", 1, "load [N]"), ("attitude", 180 / np.pi, "attitude angle [deg]"), ("normal_flow", 1, "flow [l/min, normal]"), ("power_loss", 1, "power loss [W]"),
           ("knudsen", 1, "Knudsen number"), ("factorisations", 1, "factorisations"))
@@ -110,7 +111,7 @@ def draw_gas(results, studies, what):
         axis.loglog(p, 1e6 * study.get(f"knudsen/{name}"), color=colour, label=label)
     for s, line in zip(studies, ("--", ":", "-.", "-") * len(studies)):
         least = 1e6 * np.nanmin(s.get("curves/min_thickness"))
-        axis.axhline(least, color=GREY, linestyle=line, label=f"least film of {s.name}, {least:.3g} µm")
+        axis.axhline(least, color=GREY, linestyle=line, label=f"least film of {s.name}, {digits(float(least), 3)} µm")
     axis.set_xlabel("pressure [MPa, absolute]")
     axis.set_ylabel("film thickness [µm]")
     return save(figure, results.whole("rarefaction of the gas"), what, "", handles=axis.get_legend_handles_labels()[0], columns=2)

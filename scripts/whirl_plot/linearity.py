@@ -3,6 +3,7 @@ import numpy as np
 
 from .canvas import Line2D, plt
 from .style import DASHED, INK, SHADE, X, Y, length_unit, save
+from .units import digits
 
 PAIRS = ("xx", "xy", "yx", "yy")
 
@@ -12,7 +13,7 @@ def levels_of(study):
     force = np.atleast_1d(study.get("levels/force"))
     colours = [plt.cm.viridis(0.15)] if len(force) == 1 else list(plt.cm.viridis(np.linspace(0, 0.85, len(force))))
     peak = np.atleast_1d(study.get("levels/peak")) * 1e6
-    return [(f"level_{k + 1}", colours[k], f"{f:g} N rms, peak {p:.3g} \u00b5m") for k, (f, p) in enumerate(zip(force, peak))]
+    return [(f"level_{k + 1}", colours[k], f"{f:g} N rms, peak {digits(float(p), 3)} \u00b5m") for k, (f, p) in enumerate(zip(force, peak))]
 
 
 def shade_resonance(study, axis):

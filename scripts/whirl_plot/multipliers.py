@@ -38,6 +38,8 @@ def where_crossed(kind, value, parameter, values):
     """Where on the unit circle a multiplier is at a bifurcation; of a Neimark-Sacker point the one nearest to the circle there."""
     if kind in ("flip", "cyclic_fold", "fold", "branch_point"):
         return -1.0 if kind == "flip" else 1.0
+    if kind == "hopf":  # where the cycles are born: no multiplier crosses there
+        return None
     near = values[np.argsort(np.abs(parameter - value), kind="stable")[:4]].ravel()
     near = near[np.isfinite(near) & (near.imag > 1e-6)]
     if not len(near):

@@ -4,7 +4,7 @@ from matplotlib.collections import LineCollection
 
 from .canvas import Line2D, plt
 from .style import COLOURS, GREY, INK, ROTATION, save, span_of, speed_axis
-from .units import scale_of
+from .units import digits, scale_of
 
 MOST = 6  # places on one picture
 
@@ -52,7 +52,7 @@ def draw_waterfall(study):
         axis.add_collection(LineCollection(rays, colors=COLOURS[0], linewidths=0.7, alpha=0.6, zorder=2 * len(at)))
         axis.set_xlim(*span_of(0, hertz[:, -1].max()))
         axis.set_xlabel("frequency [Hz]")
-        axis.set_title(f"{name}, highest {all_rows.max() * factor:.3g} {unit}")
+        axis.set_title(f"{name}, highest {digits(float(all_rows.max() * factor), 3)} {unit}")
     axes[0, 0].set_ylabel(label)
     handles = [Line2D([], [], color=COLOURS[0], linewidth=0.7, label="whole orders of the speed")]
     return save(figure, study, "waterfall", f"amplitudes of y, 0-peak, each panel by its highest; {ROTATION}", handles)

@@ -191,6 +191,11 @@ def draw_flat(study, speed, z, shapes, suffix):
     return save(figure, study, f"shapes{suffix}", words, axes[0].get_legend_handles_labels()[0])
 
 
+def with_gaps(lines):
+    """x, y, z of several lines as of one, not a number between them."""
+    return [np.concatenate([np.append(line[k], np.nan) for line in lines])[:-1] for k in range(3)]
+
+
 def draw_in_space(study, speed, z, shapes, suffix):
     """Ellipses along the shaft, the shaft at one moment, and where that line crosses the undeformed axis."""
     bearings = bearing_places(study, study.get("shapes/z"))
@@ -198,20 +203,21 @@ def draw_in_space(study, speed, z, shapes, suffix):
     columns = min(3, len(shapes))
     rows = -(-len(shapes) // columns)
     figure = plt.figure(figsize=(3.8 * columns, 2.6 * rows + 1.0))
-    angle = np.exp(1j * np.linspace(0, 2 * np.pi, 61))
+    angle = np.exp(1j * np.linspace(0, 2 * np.pi, 41))
     rings = np.unique(np.linspace(0, len(z) - 1, 17).round().astype(int))
     for k, shape in enumerate(shapes):
         axis = figure.add_subplot(rows, columns, k + 1, projection="3d", computed_zorder=False)
         x, y, _ = normalised(shape.x, shape.y)
-        for ring in rings:
-            ex, ey = (x[ring] * angle).real, (y[ring] * angle).real
-            # Forward where the ellipse is run through from x to y.
-            forward = (np.conj(x[ring]) * y[ring]).imag <= 0
-            axis.plot(np.full(61, z[ring]), ex, ey, color=GREY, linestyle=LINES["forward" if forward else "backward"], linewidth=0.8, clip_on=False)
+        # Forward where the ellipse is run through from x to y. All of a kind are one line with gaps, which is quicker than many.
+        forward = (np.conj(x[rings]) * y[rings]).imag <= 0
+        for sense, chosen in (("forward", rings[forward]), ("backward", rings[~forward])):
+            if len(chosen):
+                ellipses = [(np.full(len(angle), z[ring]), (x[ring] * angle).real, (y[ring] * angle).real) for ring in chosen]
+                axis.plot(*with_gaps(ellipses), color=GREY, linestyle=LINES[sense], linewidth=0.8, clip_on=False)
         axis.plot(z, np.zeros_like(z), np.zeros_like(z), color=GREY, linewidth=0.7, clip_on=False)
         axis.plot(z, x.real, y.real, color=INK, linewidth=1.6, clip_on=False)
-        for place, _ in bearings:
-            axis.plot([place, place], [0, 0], [-1, 1], color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), clip_on=False)
+        if bearings:
+            axis.plot(*with_gaps([((place, place), (0, 0), (-1, 1)) for place, _ in bearings]), color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), clip_on=False)
         # Node lines: where the shaft crosses the axis in the direction in which it moves most.
         main = y.real if np.ptp(y.real) >= np.ptp(x.real) else x.real
         crossings = nodes_of(z, main)

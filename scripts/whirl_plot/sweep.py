@@ -178,6 +178,9 @@ def draw_stability_factors(study):
                 here = np.isclose(s.get("spectrum/speed"), speed) & (s.get("spectrum/frequency") > 0)
                 axis.plot(s.get("spectrum/frequency")[here] * factor, s.get("spectrum/stability_factor")[here], mark, color=colour,
                           markersize=size, markerfacecolor="none")
+            found = np.concatenate([line.get_xdata() for line in axis.get_lines()])
+            if len(found) and found.min() > 0 and found.max() > 50 * found.min():
+                axis.set_xscale("log")
             axis.axhline(1, color=INK, linewidth=0.8)
             axis.set_ylim(0, max(1.05, axis.get_ylim()[1]))
             axis.set_title(f"{speed * factor:.6g} {unit}")
