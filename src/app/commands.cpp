@@ -59,6 +59,14 @@ std::string warnings_text(const study::Deck& deck) {
   throw e;
 }
 
+// Of the sources that the program was built in, or of an installation.
+std::string report_command() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return !error && fs::exists(program.parent_path().parent_path() / "scripts" / "report", error) ? "scripts/report"
+                                                                                                 : "whirl-report";
+}
+
 }  // namespace
 
 core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
@@ -114,8 +122,9 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
     text += service_text(all.service) + answers;
     std::size_t warnings = all.warnings.size();
     for (const io::StudySummary& s : all.studies) warnings += s.warnings.size();
-    closing = fmt::format("results in {}{}; scripts/report {} writes tables and pictures on one page\n", directory,
-                          warnings == 0 ? "" : " with " + count(warnings, "warning", "warnings"), directory);
+    closing = fmt::format("results in {}{}; {} {} writes tables and pictures on one page\n", directory,
+                          warnings == 0 ? "" : " with " + count(warnings, "warning", "warnings"), report_command(),
+                          directory);
   });
   for (const auto& o : core::Session::options_in_force())
     if (o.source != "command line")
