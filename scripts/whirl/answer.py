@@ -1,5 +1,6 @@
 """The answer of a study, as summary.json has it: sentences and tables with units and bars."""
 import html
+import re
 import typing
 
 import numpy as np
@@ -8,6 +9,11 @@ import numpy as np
 def plain(text):
     """The text of a number as people write it: `5021.4 \u00b1 6.9`, a minus that is as long as a plus."""
     return text.replace(" +- ", " \u00b1 ").replace("-", "\u2212") if text[:1] in "-(0123456789" else text
+
+
+def in_print(text):
+    """Words with numbers among them: `23.20 \u00b1 0.40 \u00b5m at node 4`."""
+    return re.sub(r"(?<=\d )um\b", "\u00b5m", text.replace(" +- ", " \u00b1 "))
 
 
 class Cell(typing.NamedTuple):
@@ -68,6 +74,6 @@ def answer(summary):
     brief = summary.get("brief", {})
     tables = [AnswerTable(t["caption"], [c["name"] for c in t["columns"]], [c["shown"].replace("um", "\u00b5m") for c in t["columns"]],
                           [c["unit"] for c in t["columns"]],
-                          [[_cell(cell, c["unit"]) for cell, c in zip(row, t["columns"])] for row in t["rows"]], t.get("note", ""))
+                          [[_cell(cell, c["unit"]) for cell, c in zip(row, t["columns"])] for row in t["rows"]], in_print(t.get("note", "")))
               for t in brief.get("tables", [])]
-    return Answer(list(brief.get("sentences", [])), tables)
+    return Answer([in_print(s) for s in brief.get("sentences", [])], tables)

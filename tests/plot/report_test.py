@@ -83,7 +83,7 @@ def answers(folder):
         table, page = table_of(study, "Critical speeds"), report.page_of(results)
         assert table.head == ["no.", "speed [rpm]", "AF", "verdict"] and table.note.endswith("3600 rpm"), table
         assert table.rows == [["1", "689.4 \u00b1 1.5", "15.7", "TOO NEAR"], ["2", "5100", "\u2013", "UNSTABLE"]], table.rows
-        assert "above 2.5: 689.4" in brief.of(study) and study.answer.tables[0].column("speed")[0] == 689.4
+        assert "above 2.5: 689.4 \u00b1 1.5 rpm" in brief.of(study) and study.answer.tables[0].column("speed")[0] == 689.4
         assert all(f"<span class=bad>{mark}</span>" in page for mark in ("TOO NEAR", "UNSTABLE")), page
         assert brief.of(results["generator pair"]) == "", "results without a brief say nothing"
 

@@ -256,6 +256,15 @@ private:
     return text;
   }
 
+  // What the study itself says of a row, else what the others say.
+  [[nodiscard]] std::string verdict(std::size_t row, const std::string& study) const {
+    Found found = verdicts_[row].found;
+    const auto at = std::ranges::find(rows_[row], study, &io::StudySummary::name);
+    if (at != rows_[row].end())
+      if (const Found own = verdict_of(*at).found; own != Found::nothing) found = own;
+    return found == Found::nothing ? "" : name_of(found);
+  }
+
   [[nodiscard]] std::vector<io::BriefTable> variants() const {
     std::size_t first = 7;
     for (const std::string& name : names_) first = std::max(first, name.size());
@@ -270,8 +279,7 @@ private:
             "Variants" + (studies_.size() > 1 ? ": " + c.study : "") + (c.study == study ? ", further values" : "");
         study = c.study;
         t.columns = {{"variant"}, {"verdict"}};
-        for (std::size_t i = 0; i < names_.size(); ++i)
-          t.rows.push_back({names_[i], verdicts_[i].found == Found::nothing ? "" : name_of(verdicts_[i].found)});
+        for (std::size_t i = 0; i < names_.size(); ++i) t.rows.push_back({names_[i], verdict(i, c.study)});
         width = 4 + first + 2 + usual_cell;
       }
       width += own;
