@@ -126,8 +126,6 @@ def all_values(study):
     more = [[b.get("type"), with_bar(b.get("value"), b.get("uncertainty")), ", ".join(f"{k} {digits(v, 5)}" for k, v in b.items() if k not in usual)]
             for b in study.bifurcations]
     out.append(tables.Table("All about the bifurcations", ["type", "value", "more"], more))
-    doubts = [[f"{digits(s.get('from'), 6)} to {digits(s.get('to'), 6)} {s.get('unit', '')}", s.get("reason", "")] for s in study.summary.get("suspected", [])]
-    out.append(tables.Table("Not resolved: bifurcations may lie here", ["where", "why"], doubts))
     modes = [[digits(m.get("speed"), 6), digits(m.get("mode"), 4), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4),
               digits(m.get("damping_ratio"), 4), m.get("whirl") or "", m.get("stability") or ""] for m in study.modes]
     out.append(tables.Table("All modes", ["speed", "mode", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "damping ratio", "whirl", ""], modes,
@@ -250,7 +248,6 @@ def page_of(results):
     links = "".join(f"<a href='#{anchor(s.name)}'>{escape(s.name)}</a>" for s, _ in studies)
     machine = [p for p in general if p.stem == "machine"]
     together = [p for p in general if p.stem != "machine"]
-    safe = tables.safe_perturbation(results)
     conventions = tables.Table("Conventions", ["", ""], [list(c) for c in CONVENTIONS])
     inputs = tables.inputs(results)
     return "\n".join([
@@ -260,7 +257,7 @@ def page_of(results):
         at_service_speed(results), warned([str(w) for w in summary.get("warnings", [])] if isinstance(summary.get("warnings"), list) else []),
         in_brief(results), "<h2 id=machine>The machine</h2>", *(picture(p) for p in machine), *(show(t) for t in inputs), show(conventions, folded=True),
         *([f"<h2 id=together>All together</h2>{''.join(picture(p) for p in together)}"] if together else []),
-        *([show(safe)] if safe else []), *(section(s, p) for s, p in studies), left_over(results),
+        *(section(s, p) for s, p in studies), left_over(results),
         f"<h2 id=options>Options in force</h2><p class=note>as the deck was understood, every default written out; resolved.yaml beside this page is that deck</p>{options_in_force(results)}",
         "</html>"])
 

@@ -20,28 +20,6 @@ std::size_t widest_line() {
   return columns;
 }
 
-std::string number(std::optional<double> value) {
-  if (!value) return "-";
-  const double size = std::abs(*value);
-  if (size != 0 && (size < 1e-3 || size >= 1e6)) return fmt::format("{:.3e}", *value);
-  const int before = size == 0 ? 1 : static_cast<int>(std::floor(std::log10(size))) + 1;
-  return fmt::format("{:.{}f}", *value, std::max(0, 4 - before));
-}
-
-std::string cell_of(const io::Quantity& q, double factor) {
-  if (!std::isfinite(q.value)) return "-";
-  const auto bar = q.more.find("uncertainty");
-  const double error = bar == q.more.end() ? io::no_value : factor * bar->second;
-  return std::isfinite(error) && error > 0 ? with_uncertainty(factor * q.value, error, "") : number(factor * q.value);
-}
-
-std::string brief_cell(const io::Quantity& q, double factor) {
-  constexpr double hidden = 2e-3;
-  const auto bar = q.more.find("uncertainty");
-  const bool shown = bar != q.more.end() && bar->second > hidden * std::abs(q.value);
-  return shown || !std::isfinite(q.value) ? cell_of(q, factor) : fmt::format("{:.4g}", factor * q.value);
-}
-
 std::string in_lines(const std::string& text, std::size_t indent) {
   std::string out, line(indent, ' ');
   for (std::size_t from = 0; from < text.size();) {
@@ -55,50 +33,6 @@ std::string in_lines(const std::string& text, std::size_t indent) {
     from = to + 1;
   }
   return out + line + "\n";
-}
-
-Values::Values(const io::StudySummary& s) {
-  for (const auto& [name, quantity] : s.values) all_[name] = quantity;
-}
-
-io::Quantity Values::quantity(const std::string& name) const {
-  const auto at = all_.find(name);
-  return at == all_.end() ? io::Quantity{} : at->second;
-}
-
-std::optional<double> Values::get(const std::string& name) const {
-  const auto at = all_.find(name);
-  if (at == all_.end() || !std::isfinite(at->second.value)) return std::nullopt;
-  return at->second.value;
-}
-
-std::string Values::unit(const std::string& name) const {
-  const auto at = all_.find(name);
-  return at == all_.end() ? "" : at->second.unit;
-}
-
-double Values::bar(const std::string& name) const {
-  const auto at = all_.find(name);
-  if (at == all_.end() || !at->second.more.contains("uncertainty")) return io::no_value;
-  return at->second.more.at("uncertainty");
-}
-
-std::string Values::cell(const std::string& name, double factor) const {
-  const auto at = all_.find(name);
-  return at == all_.end() ? "-" : cell_of(at->second, factor);
-}
-
-std::string Values::brief(const std::string& name, double factor) const {
-  const auto at = all_.find(name);
-  return at == all_.end() ? "-" : brief_cell(at->second, factor);
-}
-
-std::vector<std::string> Values::between(const io::StudySummary& s, const std::string& head, const std::string& tail) {
-  std::vector<std::string> found;
-  for (const auto& [name, quantity] : s.values)
-    if (name.size() > head.size() + tail.size() && name.starts_with(head) && name.ends_with(tail))
-      found.push_back(name.substr(head.size(), name.size() - head.size() - tail.size()));
-  return found;
 }
 
 std::string Grid::text() const {
@@ -116,10 +50,12 @@ std::string Grid::text() const {
     auto to = from;
     std::size_t wide = indent + width[0];
     while (to != shown.end() && (to == from || wide + gap + width[*to] <= widest_line())) wide += gap + width[*to++];
-    for (const auto& row : rows_) {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const auto& row = rows_[r];
       std::string line = fmt::format("{:{}}{:<{}}", "", indent, row[0], width[0]);
       for (auto c = from; c != to; ++c) line += fmt::format("{:{}}{:>{}}", "", gap, row[*c], width[*c]);
       out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+      if (to == shown.end() && !remarks_[r].empty()) out += in_lines(remarks_[r], 2 * indent);
     }
     from = to;
   } while (from != shown.end());

@@ -92,12 +92,10 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   // in the files.
   const bool opens_with_service = deck.machine.service_speed.has_value();
   std::string answers;
-  std::vector<io::StudySummary> before;
   options.ended = [&](const io::StudySummary& s) {
     if (request.progress) fmt::print(stderr, "\r\033[K");
     ++ended;
-    const std::string answer = answer_text(s, before);
-    before.push_back(s);
+    const std::string answer = answer_text(s);
     print(headline_text(s) + (opens_with_service ? "" : answer));
     if (opens_with_service && !answer.empty()) answers += fmt::format("{}:\n{}", s.name, answer);
   };

@@ -3,10 +3,11 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "highlights.hpp"
+#include "cells.hpp"
 
 namespace whirl::app {
 
@@ -26,17 +27,27 @@ std::string in_words(const std::vector<io::StabilityRange>& ranges) {
   return ranges.size() > 1 && ranges[0].unit != "1" ? text + " " + ranges[0].unit : text;
 }
 
+constexpr std::size_t widest_words = 45;
+
 std::string brief_text(const io::Brief& brief) {
   std::string text;
   for (const std::string& sentence : brief.sentences) text += in_lines(sentence, 2);
   for (const io::BriefTable& t : brief.tables) {
+    // Sentences in the last column stand below their rows.
+    const bool remarks = t.columns.size() > 1 && std::ranges::any_of(t.rows, [](const auto& row) {
+                           return row.back().text.size() > widest_words;
+                         });
+    const std::size_t count = t.columns.size() - (remarks ? 1 : 0);
     std::vector<std::string> heads;
-    for (const io::BriefColumn& c : t.columns) heads.push_back(c.name + (c.shown.empty() ? "" : " [" + c.shown + "]"));
+    for (std::size_t k = 0; k < count; ++k) {
+      const io::BriefColumn& c = t.columns[k];
+      heads.push_back(c.name + (c.shown.empty() ? "" : " [" + c.shown + "]"));
+    }
     Grid grid(std::move(heads));
     for (const auto& row : t.rows) {
       std::vector<std::string> cells;
-      for (const io::BriefCell& c : row) cells.push_back(c.text.empty() ? "-" : c.text);
-      grid.add(std::move(cells));
+      for (std::size_t k = 0; k < count; ++k) cells.push_back(row[k].text.empty() ? "-" : row[k].text);
+      grid.add(std::move(cells), remarks ? row.back().text : "");
     }
     text += in_lines(t.caption, 2) + grid.text();
     if (!t.note.empty()) text += in_lines(t.note, 4);
@@ -50,30 +61,16 @@ std::string headline_text(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
   if (!s.layout.empty()) text += fmt::format("  {}\n", s.layout);
-  if (!s.stability.empty()) text += fmt::format("  {}{}\n", s.stability, in_words(s.ranges));
+  const bool answered = std::ranges::any_of(s.brief.sentences, [&](const std::string& sentence) {
+    return sentence.find("stab") != std::string::npos || sentence.find(s.stability) != std::string::npos;
+  });
+  if (!s.stability.empty() && !answered) text += fmt::format("  {}{}\n", s.stability, in_words(s.ranges));
   for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
   return text;
 }
 
-std::string answer_text(const io::StudySummary& s, std::span<const io::StudySummary> before) {
-  std::string text;
-  for (const io::Bifurcation& b : s.bifurcations) {
-    text += fmt::format("  {} at {} {}{}{}{}\n", io::name_of(b.type), b.parameter,
-                        with_uncertainty(b.value, b.uncertainty, b.unit), b.criticality.empty() ? "" : ", ",
-                        b.criticality, b.sentence.empty() ? "" : ": " + b.sentence);
-    if (const auto error = b.more.find("reduction_error"); error != b.more.end() && std::isfinite(error->second))
-      text += fmt::format("    estimated error of the shaft's reduction: {:+.2g} {}\n", error->second, b.unit);
-  }
-  for (const io::CodimensionTwo& c : s.codimension_two) {
-    const auto bar = c.more.find("value_uncertainty");
-    text +=
-        fmt::format("  {}{} at {} {}, {} {}\n", c.more.contains("end_of_curve") ? "ends at " : "", c.type, c.parameter,
-                    with_uncertainty(c.value.value, bar == c.more.end() ? io::no_value : bar->second, c.value.unit),
-                    c.second_parameter, with_uncertainty(c.second_value.value, c.uncertainty, c.second_value.unit));
-  }
-  for (const io::Suspicion& x : s.suspected)
-    text += fmt::format("  not resolved from {:.7g} to {:.7g} {}: {}\n", x.from, x.to, x.unit, x.reason);
-  return text + brief_text(s.brief) + highlights(s, before);
+std::string answer_text(const io::StudySummary& s) {
+  return brief_text(s.brief);
 }
 
 std::string service_text(const io::Service& service) {

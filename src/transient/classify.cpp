@@ -173,7 +173,7 @@ Verdict classify(const Evidence& e) {
       return {Kind::unsettled, 0, "unsettled",
               fmt::format("at rest at an unstable equilibrium, where a disturbance grows: {}", e.grows)};
     return {Kind::fixed_point, 0, "fixed_point",
-            fmt::format("moves by {:.1e}{}", e.size, e.exponents.empty() ? "" : ", " + largest(e))};
+            fmt::format("moves by {:.1e}{}", e.size, known(e) ? ", " + largest(e) : "")};
   }
   const auto back = std::find_if(e.returns.begin(), e.returns.end(), [&](double d) { return d < e.return_tolerance; });
   const int period = back == e.returns.end() ? 0 : static_cast<int>(back - e.returns.begin()) + 1;

@@ -170,9 +170,9 @@ def by_the_commands(script, directory, *words, draw=None):
 
 
 with tempfile.TemporaryDirectory() as name:
-    made(doubled_branch(pathlib.Path(name)), None, "Largest vibration of the stable cycles", "period doubles", "cylindrical", "25 \u00b5m", run=by_the_commands)
+    made(doubled_branch(pathlib.Path(name)), None, "Largest vibration of the stable cycles", "flip (period doubling)", "cylindrical", "25 \u00b5m", run=by_the_commands)
     undamped_friends(pathlib.Path(name))
     of_python(pathlib.Path(name))
     made(slopes_along_the_shaft(pathlib.Path(name)), {"machine"}, "Shaft with a disc")
-    made(nodes_of_a_branch(pathlib.Path(name)), {"machine", "b.nodes"}, "node 130, shaft", "lemon bore", "gen_pair")
+    made(nodes_of_a_branch(pathlib.Path(name)), {"machine", "b.nodes"}, "node 130", "lemon bore", "gen_pair")
 print("results are as the pictures need them")

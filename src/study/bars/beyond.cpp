@@ -18,19 +18,8 @@ bool is_fold(const io::Bifurcation& b) {
   return b.type == Type::fold || b.type == Type::cyclic_fold;
 }
 
-// "this speed", "this supply": the last word of a path that is no number.
 std::string place(const io::Bifurcation& b) {
-  std::string path = b.parameter;
-  while (!path.empty()) {
-    const auto dot = path.rfind('.');
-    std::string word = dot == std::string::npos ? path : path.substr(dot + 1);
-    if (!word.empty() && !std::isdigit(static_cast<unsigned char>(word.front()))) {
-      std::replace(word.begin(), word.end(), '_', ' ');
-      return "this " + word;
-    }
-    path = dot == std::string::npos ? "" : path.substr(0, dot);
-  }
-  return "this value";
+  return "this " + parameter_word(b.parameter);
 }
 
 // As many digits as the bar supports, to its first one; three to six.
@@ -107,6 +96,19 @@ std::string of_gain(const io::Bifurcation& b, const BranchKind& kind, bool again
 }
 
 }  // namespace
+
+std::string parameter_word(std::string path) {
+  while (!path.empty()) {
+    const auto dot = path.rfind('.');
+    std::string word = dot == std::string::npos ? path : path.substr(dot + 1);
+    if (!word.empty() && !std::isdigit(static_cast<unsigned char>(word.front()))) {
+      std::replace(word.begin(), word.end(), '_', ' ');
+      return word;
+    }
+    path = dot == std::string::npos ? "" : path.substr(0, dot);
+  }
+  return "value";
+}
 
 std::string born_at(io::BifurcationType type, const BranchKind& kind) {
   switch (type) {

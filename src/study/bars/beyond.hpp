@@ -18,6 +18,9 @@ struct BranchKind {
   bool linear = false;        ///< no force depends on the motion but in proportion: nothing limits what grows
 };
 
+/// "speed", "supply": the last word of a path that is no number.
+[[nodiscard]] std::string parameter_word(std::string path);
+
 /// What begins at a bifurcation: "whirl", "half-frequency whirl", "second whirl", "oscillation", ...; empty for folds
 /// and branch points.
 [[nodiscard]] std::string born_at(io::BifurcationType type, const BranchKind& kind);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "study/cycle/coexisting.hpp"
+#include "study/cycle/cycle_brief.hpp"
 #include "study/cycle/cycle_follower.hpp"
 
 namespace whirl::study {
@@ -22,6 +23,10 @@ public:
     CycleFollower follower(context, options_);
     follower.leave_from(flips_, from_);
     return follower.run();
+  }
+  [[nodiscard]] io::Brief brief(const StudyResult& result,
+                                std::span<const io::StudySummary> /*before*/) const override {
+    return brief_of_cycles(result, options_);
   }
 
 private:
@@ -43,6 +48,10 @@ public:
     CycleFollower follower(context, options_);
     follower.begin_at(first_);
     return follower.run();
+  }
+  [[nodiscard]] io::Brief brief(const StudyResult& result,
+                                std::span<const io::StudySummary> /*before*/) const override {
+    return brief_of_cycles(result, options_);
   }
 
 private:
@@ -70,6 +79,10 @@ private:
 
 StudyResult CycleBranch::run(Context& context) {
   return CycleFollower(context, options).run();
+}
+
+io::Brief CycleBranch::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  return brief_of_cycles(result, options);
 }
 
 // A resumed run takes the flips of a finished branch from its results, and so does any other.

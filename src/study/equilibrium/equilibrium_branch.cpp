@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "study/bars/beyond.hpp"
+#include "study/bars/branch_brief.hpp"
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/mesh_wave.hpp"
@@ -14,6 +15,7 @@
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
+#include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/cycle/cycle_record.hpp"
@@ -338,6 +340,14 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   return results.finish(branch_status(end, unit), end.points > 0);
 }
 
+io::Brief brief_of_equilibria(const io::StudySummary& s) {
+  io::Brief brief = brief_of_branch(s, "equilibrium");
+  if (const io::Quantity contact = Values(s)["contact"]; std::isfinite(contact.value))
+    brief.sentences.push_back(
+        fmt::format("The branch ends at {}, where a film becomes too thin.", io::reading(contact)));
+  return brief;
+}
+
 // The branch that begins at an equilibrium beside the first one of another branch.
 class BesideBranch final : public Study {
 public:
@@ -347,6 +357,10 @@ public:
   [[nodiscard]] std::string name() const override { return name_; }
   void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
   [[nodiscard]] StudyResult run(Context& context) override { return follow_equilibria(context, options_, &first_); }
+  [[nodiscard]] io::Brief brief(const StudyResult& result,
+                                std::span<const io::StudySummary> /*before*/) const override {
+    return brief_of_equilibria(result.summary);
+  }
 
 private:
   std::string name_;
@@ -362,6 +376,10 @@ bool EquilibriumBranch::may_add(std::string_view other) const {
 
 StudyResult EquilibriumBranch::run(Context& context) {
   return follow_equilibria(context, options, nullptr);
+}
+
+io::Brief EquilibriumBranch::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  return brief_of_equilibria(result.summary);
 }
 
 std::vector<std::unique_ptr<Study>> EquilibriumBranch::further(const io::Group& result) const {

@@ -10,6 +10,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/open_bore.hpp"
+#include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
@@ -230,10 +231,82 @@ private:
   double last_saved_ = -1e9;
 };
 
+// "The motion is periodic and repeats after 2 revolutions: returns within 1e-6 of its size".
+std::string kind_in_words(const std::string& kind, const Values& v) {
+  const auto period = v.get("period"), time = v.get("period.time");
+  if (kind == "fixed_point") return "The machine comes to rest (a fixed point)";
+  if (kind == "unsettled") return "The motion has not settled, so that its kind is open";
+  if (kind == "driven") return "External forces drive the motion";
+  if (kind == "quasi_periodic") return "The motion is quasi-periodic";
+  if (kind == "limit_cycle")
+    return "The motion is a limit cycle" + (time ? " of " + io::reading(v["period.time"]) : std::string()) +
+           (time && *period > 1 ? fmt::format(", which crosses its section {:.0f} times", *period) : std::string());
+  if (kind.starts_with("period-") && period)
+    return *period == 1 ? std::string("The motion is periodic and repeats after each revolution")
+                        : fmt::format("The motion is periodic and repeats after {:.0f} revolutions", *period);
+  return "The motion is " + kind;
+}
+
+io::BriefTable table_of_places(const Values& v) {
+  const std::vector<std::string> places = v.between("peak_to_peak.", ".x");
+  // At rest there are no tones.
+  if (places.empty() || v.between("tone.", ".frequency").empty()) return {};
+  const std::string length = v["peak_to_peak." + places.front() + ".x"].unit;
+  io::BriefTable table{"Motion of the places shown, peak to peak",
+                       {{"place"},
+                        {"x", length},
+                        {"y", length},
+                        {"strongest tone in y", "Hz"},
+                        {"per revolution", "1"},
+                        {"its amplitude", length}},
+                       {},
+                       {}};
+  for (const std::string& p : places) {
+    const std::string tone = "tone." + p + ".y.1.";
+    table.rows.push_back({p, v["peak_to_peak." + p + ".x"], v["peak_to_peak." + p + ".y"], v[tone + "frequency"],
+                          v[tone + "order"], v[tone + "amplitude"]});
+  }
+  return table;
+}
+
+io::BriefTable table_of_exponents(const Values& v) {
+  io::BriefTable table{"Lyapunov exponents",
+                       {{"exponent"}, {"value", "1/s"}, {"per revolution", "1"}},
+                       {},
+                       "positive: neighbouring motions part; bar: the interval that holds it with 99 % probability"};
+  for (int k = 1; v.get(fmt::format("lyapunov.{}", k)); ++k) {
+    const std::string head = fmt::format("lyapunov.{}", k);
+    io::Quantity rate = v[head], turn = v[head + ".per_revolution"];
+    if (const auto bar = v.get(head + ".uncertainty")) {
+      rate.more["uncertainty"] = *bar;
+      if (rate.value != 0) turn.more["uncertainty"] = std::abs(*bar * turn.value / rate.value);
+    }
+    table.rows.push_back({std::to_string(k), rate, turn});
+  }
+  return table;
+}
+
 }  // namespace
 
 StudyResult Motion::run(Context& context) {
   return Player(context, options).run();
+}
+
+io::Brief Motion::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  io::Brief brief{{}, {table_of_places(v), table_of_exponents(v)}};
+  for (const std::string& kind : v.between("motion.", ""))
+    // What has not settled has its evidence among the warnings.
+    brief.sentences.push_back(kind == "unsettled"
+                                  ? kind_in_words(kind, v) + "."
+                                  : fmt::format("{}: {}.", kind_in_words(kind, v), result.group.text("evidence")));
+  if (const io::Quantity turns = v["rotation"]; std::isfinite(turns.value)) {
+    std::string words = fmt::format("The rotation number is {} turns per return", io::reading(turns));
+    if (const auto p = v.get("rotation.locked.numerator"), q = v.get("rotation.locked.denominator"); p && q)
+      words += fmt::format(", locked at {:.0f}/{:.0f}", *p, *q);
+    brief.sentences.push_back(words + ".");
+  }
+  return brief;
 }
 
 }  // namespace whirl::study

@@ -11,6 +11,7 @@
 #include "study/bars/film_limit.hpp"
 #include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/motion/motion_start.hpp"
@@ -348,6 +349,27 @@ private:
 
 StudyResult RunUp::run(Context& context) {
   return Runner(context, options).run();
+}
+
+io::Brief RunUp::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  const std::vector<std::string> places = v.between("", ".peak.amplitude");
+  const auto name = [](const std::string& place) {
+    return place.starts_with("node.") ? "node " + place.substr(5) : place.substr(place.find('.') + 1);
+  };
+  const auto peak = [&](const std::string& place) { return v[place + ".peak.amplitude"]; };
+  const auto top = std::ranges::max_element(places, {}, [&](const auto& p) { return peak(p).value; });
+  if (top == places.end()) return {};
+  io::BriefTable table{"Largest vibration on the way",
+                       {{"place"}, {"amplitude, 0-peak", "m"}, {"at", options.range.unit}},
+                       {},
+                       "0-peak: largest distance from the mean position within a revolution; the free vibration of "
+                       "the start is left out"};
+  for (const std::string& p : places) table.rows.push_back({name(p), peak(p), v[p + ".peak.speed"]});
+  const bool up = options.range.to > options.range.from;
+  return {{fmt::format("The largest vibration on the way {} is {} 0-peak at {}, reached at {}.", up ? "up" : "down",
+                       io::reading(peak(*top)), name(*top), io::reading(v[*top + ".peak.speed"]))},
+          {std::move(table)}};
 }
 
 }  // namespace whirl::study

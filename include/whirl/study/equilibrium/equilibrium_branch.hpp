@@ -24,6 +24,7 @@ public:
   [[nodiscard]] bool may_add(std::string_view other) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
+  [[nodiscard]] io::Brief brief(const StudyResult& result, std::span<const io::StudySummary> before) const override;
   [[nodiscard]] std::vector<std::unique_ptr<Study>> further(const io::Group& result) const override;
 };
 
