@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "study/bars/branch_brief.hpp"
 #include "study/bifurcation.hpp"
 #include "study/common.hpp"
 #include "study/convergence/mesh_convergence.hpp"
@@ -181,6 +182,44 @@ StudyResult MeshConvergence::run(Context& context) {
     now = {};
   }
   return finish_convergence(context, options, rows, branch.parameter, trouble);
+}
+
+io::Brief MeshConvergence::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const std::vector<io::Bifurcation>& all = result.summary.bifurcations;
+  if (all.empty()) return {};
+  const std::string& unit = all.front().unit;
+  const auto refined = [](const io::Bifurcation& b, int times) { return more_of(b, fmt::format("refined_{}", times)); };
+  io::BriefTable table{
+      fmt::format("Bifurcations of '{}' on finer film meshes", options.of),
+      {{"what"}, {"deck's mesh", unit}},
+      {},
+      "finer: cells in both directions; limit: Richardson's extrapolation, bar of film mesh, time mesh and location; "
+      "order: that the last three meshes show"};
+  for (int level = 1; level <= options.doublings; ++level)
+    table.columns.push_back({fmt::format("{} x finer", 1 << level), unit});
+  table.columns.insert(table.columns.end(), {{"limit", unit}, {"order", "1"}, {"deck off by", "%"}});
+  io::Brief brief;
+  const io::Bifurcation* farthest = nullptr;
+  const auto off = [&](const io::Bifurcation& b) { return 100 * (refined(b, 1) - b.value) / std::abs(b.value); };
+  for (const io::Bifurcation& b : all) {
+    auto& row = table.rows.emplace_back();
+    row.emplace_back(words_of(b.type));
+    for (int level = 0; level <= options.doublings; ++level)
+      row.emplace_back(io::Quantity{refined(b, 1 << level), unit});
+    row.emplace_back(io::Quantity{b.value, unit, {{"uncertainty", b.uncertainty}}});
+    row.emplace_back(io::Quantity{more_of(b, "observed_order"), "1"});
+    row.emplace_back(io::Quantity{off(b), "%"});
+    if (!(std::abs(off(b)) <= (farthest ? std::abs(off(*farthest)) : -1))) farthest = &b;
+  }
+  const std::string moved = fmt::format(
+      "from {} on the mesh of the deck to the limit {}, by {:.2g} %", io::reading({refined(*farthest, 1), unit}),
+      io::reading({farthest->value, unit, {{"uncertainty", farthest->uncertainty}}}), std::abs(off(*farthest)));
+  brief.sentences.push_back(
+      all.size() == 1 ? fmt::format("On finer film meshes the {} moves {}.", short_words_of(farthest->type), moved)
+                      : fmt::format("On finer film meshes the {} moves the farthest of {} bifurcations: {}.",
+                                    short_words_of(farthest->type), all.size(), moved));
+  brief.tables.push_back(std::move(table));
+  return brief;
 }
 
 StudyResult finish_convergence(Context& context, const MeshConvergenceOptions& options, const io::Table& rows,

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/motion/linearity_run.hpp"
@@ -42,6 +43,56 @@ StudyResult Linearity::run(Context& context) {
   put_linearity(context, options, records, linear, runner.node());
   results.summary().points = static_cast<long>(lines);
   return results.finish("completed", true);
+}
+
+io::Brief Linearity::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+  const Values v(result.summary);
+  const std::vector<std::string> levels = v.between("level.", ".force");
+  if (levels.empty()) return {};
+  const auto percent = [&](const std::string& name) { return scaled(v[name], 100, "%"); };
+  const double sure = 100 * options.probability;
+  io::BriefTable table{"Levels of the random force",
+                       {{"force, rms", "N"},
+                        {"largest displacement", "m"},
+                        {"rms x", "m"},
+                        {"rms y", "m"},
+                        {"mean x", "m"},
+                        {"mean y", "m"},
+                        {"H1 within bounds", "%"},
+                        {"deviation", "%"},
+                        {"least coherence", "1"},
+                        {"at", "Hz"},
+                        {"at the resonance", "1"}},
+                       {},
+                       fmt::format("H1 within bounds: share of its entries whose bounds of {:.4g} % hold the linear "
+                                   "transfer function; deviation: root mean square of H1 less the linear one, over "
+                                   "the largest gain; both off the resonance, as the least coherence. By chance alone "
+                                   "the coherence reaches {}",
+                                   sure, io::reading(v["coherence.chance"]))};
+  for (const std::string& k : levels) {
+    const std::string head = "level." + k + ".";
+    table.rows.push_back({v[head + "force"], v[head + "peak"], v[head + "rms.x"], v[head + "rms.y"], v[head + "mean.x"],
+                          v[head + "mean.y"], percent(head + "within"), percent(head + "deviation"),
+                          v[head + "coherence.least"], v[head + "coherence.least_at"],
+                          v[head + "coherence.resonance"]});
+  }
+  io::Brief brief{{}, {std::move(table)}};
+  const auto at_level = [&](const std::string& k) {
+    const std::string head = "level." + k + ".";
+    return fmt::format(
+        "With {} rms of force the largest displacement is {}: off the resonance {:.0f} % of the entries of H1 lie "
+        "within "
+        "their bounds of the linear transfer functions ({:.4g} % would if all were linear), and the "
+        "coherence is {:.3f} at least, at the resonance {:.3f}.",
+        io::reading(v[head + "force"]), io::reading(v[head + "peak"]), percent(head + "within").value, sure,
+        v[head + "coherence.least"].value, v[head + "coherence.resonance"].value);
+  };
+  brief.sentences.push_back(at_level(levels.front()));
+  if (levels.size() > 1) brief.sentences.push_back(at_level(levels.back()));
+  brief.sentences.push_back(fmt::format("The resonance at {} reaches from {:.5g} to {}.",
+                                        io::reading(v["resonance.frequency"]), v["resonance.from"].value,
+                                        io::reading(v["resonance.to"])));
+  return brief;
 }
 
 }  // namespace whirl::study

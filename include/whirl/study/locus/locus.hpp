@@ -26,6 +26,7 @@ public:
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
   [[nodiscard]] std::string starts_from() const override { return options.of; }
   [[nodiscard]] StudyResult run(Context& context) override;
+  [[nodiscard]] io::Brief brief(const StudyResult& result, std::span<const io::StudySummary> before) const override;
 };
 
 }  // namespace whirl::study
