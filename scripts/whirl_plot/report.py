@@ -45,7 +45,7 @@ CAPTIONS = {
     "trends": "Where bifurcations lie over what the sweep changes.", "impedance": "Resistance to a squeeze, over the journal's place.",
     "map-locus": "Where the journal rests under a load.", "map-stiffness": "Stiffness over the load.", "map-damping": "Damping over the load.",
     "map-stability": "Where a rigid rotor loses stability.", "map-pressure": "Pressure and thickness around the bearing.",
-    "harmonics": "Harmonics of the whirl of each cycle.", "critical-speeds": "Undamped critical speeds over the stiffness of the supports.",
+    "history": "The motion over time.", "harmonics": "Harmonics of the whirl of each cycle.", "critical-speeds": "Undamped critical speeds over the stiffness of the supports.",
     "convergence": "Natural frequencies over the number of elements.", "shifts": "Frequencies of other elements against those of the deck.",
     "conditions": "Condition of the eigenvalues.", "reduction-errors": "Errors of reduced shafts.", "reduction-orbits": "Orbits of whole and reduced shafts.",
     "reduction-maps": "Entries of the reduced matrices.", "whirl-map": "Sense of whirl of each mode along the shaft, over the speed.",
@@ -266,7 +266,7 @@ def main(argv):
     directory = results_directory("report", argv)
     if isinstance(directory, int):
         return directory
-    style.use_style(("png", "svg"))
+    style.use_style(("png",))
     with said_in_a_sentence("report"), Drawn(directory) as results:
         if not any(p for _, p in pictures_of(results)[0]):
             for _ in plot.drawn(results, "report"):  # a report by itself draws what it shows
