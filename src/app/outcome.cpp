@@ -61,10 +61,8 @@ std::string headline_text(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
   if (!s.layout.empty()) text += fmt::format("  {}\n", s.layout);
-  const bool answered = std::ranges::any_of(s.brief.sentences, [&](const std::string& sentence) {
-    return sentence.find("stab") != std::string::npos || sentence.find(s.stability) != std::string::npos;
-  });
-  if (!s.stability.empty() && !answered) text += fmt::format("  {}{}\n", s.stability, in_words(s.ranges));
+  if (!s.stability.empty() && !s.brief.tells_stability)
+    text += fmt::format("  {}{}\n", s.stability, in_words(s.ranges));
   for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
   return text;
 }

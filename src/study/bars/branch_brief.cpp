@@ -287,6 +287,7 @@ io::Brief brief_of_branch(const io::StudySummary& s, const std::string& what) {
   const std::vector<JoinedStretch> all = joined(s.ranges);
   const Values v(s);
   io::Brief brief{on_stability(s, all, what), {}};
+  brief.tells_stability = !brief.sentences.empty();
   brief.sentences.push_back(threshold_of(s, brief.sentences.empty() ? "" : brief.sentences.front()));
   if (const auto count = v.get("solutions"); count && *count > 1)
     brief.sentences.push_back(

@@ -254,8 +254,7 @@ io::BriefTable last_modes(const io::StudySummary& s, const Values& v) {
     notes.push_back(fmt::format("{} more stand in summary.json", last.size() - table.rows.size()));
   if (const auto count = v.get("overdamped"); count && *count > 0)
     notes.push_back(fmt::format(
-        "{:.0f} motions that decay without vibrating (damping ratio above 0.9) stand in the table 'overdamped'",
-        *count));
+        "{:.0f} more decay without vibration (damping ratio above 0.9): see the table 'overdamped'", *count));
   for (const std::string& n : notes) table.note += (table.note.empty() ? "" : "; ") + n;
   return table;
 }
