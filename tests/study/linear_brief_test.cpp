@@ -148,6 +148,7 @@ TEST(ResponseBrief, NamesTheLargestPeakThatIsAMotion) {
              peak("B1, journal", 3094, 5e-5, "stable")};
   s.peaks[1].notes = {"no amplification factor: the range ends"};
   s.peaks[1].amplification_factor = {};
+  s.peaks[1].verdict = "far enough";  // the margin of no motion
   const io::Brief b = brief_of(study, s);
   EXPECT_EQ(b.sentences[0], "largest peak 23.4 um at node 4, 3094 rpm, amplification 12");
   const io::BriefTable* nodes = table(b, "Peaks of the response");

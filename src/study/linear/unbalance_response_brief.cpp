@@ -30,14 +30,15 @@ bool is_answer(const io::PeakEntry& p) {
          });
 }
 
-// What has to be known with a peak, in a few words.
+// What has to be known with a peak, in a few words. The margin of no motion deserves no verdict.
 std::string mark_of(const io::PeakEntry& p) {
   std::vector<std::string> marks;
   if (!p.stability.empty() && p.stability != "stable")
     marks.emplace_back(p.stability == "unstable" ? "UNSTABLE" : is_undamped(p) ? p.stability : "stability?");
-  if (p.verdict.starts_with("damped"))
+  const bool moves = p.stability != "unstable";
+  if (moves && p.verdict.starts_with("damped"))
     marks.emplace_back("damped");
-  else if (!p.verdict.empty())
+  else if (moves && !p.verdict.empty())
     marks.push_back(margin_mark(p.verdict));
   if (std::ranges::any_of(p.notes, [](const auto& note) { return note.starts_with("no answer"); }))
     marks.emplace_back("no film left");
