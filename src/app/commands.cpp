@@ -85,7 +85,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   std::size_t ended = 0;
   if (request.progress)
     options.say = [&](const std::string& line, bool /*transient*/) {
-      const std::string where = line.empty() ? "" : fmt::format("study {} of {}, ", ended + 1, deck.studies.size());
+      const std::string where = line.empty() ? "" : fmt::format("{} of {} studies done, ", ended, deck.studies.size());
       fmt::print(stderr, "\r\033[K{}", (where + line).substr(0, widest_line() - 1));
     };
   // With a service speed what is known there comes before the answers of the studies, which need not wait to be seen
@@ -94,7 +94,8 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   std::string answers;
   options.ended = [&](const io::StudySummary& s) {
     if (request.progress) fmt::print(stderr, "\r\033[K");
-    ++ended;
+    // A branch that another one calls for is no study of the deck.
+    ended += std::ranges::any_of(deck.studies, [&](const auto& study) { return study->name() == s.name; });
     const std::string answer = answer_text(s);
     print(headline_text(s) + (opens_with_service ? "" : answer));
     if (opens_with_service && !answer.empty()) answers += fmt::format("{}:\n{}", s.name, answer);
