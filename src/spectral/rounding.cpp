@@ -122,7 +122,8 @@ DensePencil::Doubt DensePencil::doubt() const {
     const double moved = std::isfinite(first) ? std::min(first, most) : most;
     if (asked(values_[k])) out[k] = moved;
     // Rows of very different size make that bound far too large. What the eigenvalue moves by to first order, y^T (A -
-    // lambda B) x with y^T B x = 1, has errors of each row by itself.
+    // lambda B) x with y^T B x = 1 (Stewart and Sun 1990, Matrix Perturbation Theory, ch. VI), has errors of each row
+    // by itself.
     if (asked(values_[k]) && !near[k] && left.size() > 0) {
       const double step = std::abs((left.row(column) * (of_a.col(column) - values_[k] * of_b.col(column)))(0)),
                    blur = eps * left.row(column).cwiseAbs().dot(

@@ -2,6 +2,7 @@
 // What a reader of a study wants to know first, as data: screen, report and users' programs show the same.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "whirl/io/quantity.hpp"
@@ -23,7 +24,7 @@ struct BriefCell {
 
 struct BriefColumn {
   std::string name = {};
-  std::string unit = {};   ///< of the numbers in it, SI or that of the study; "1": none; empty: each has its own
+  std::string unit = {};   ///< of its numbers: SI, or the unit of the study; "1": none; empty: each number has a unit
   std::string shown = {};  ///< unit in which a person reads them; typeset() chooses it
   double factor = 1;       ///< from `unit` to `shown`
 };
@@ -42,9 +43,8 @@ struct Brief {
   bool tells_stability = false;  ///< the sentences hold the verdict of the study; not in the file
 };
 
-/// Chooses the unit of each column by its largest number (um, kN, MPa, deg, ...) and writes the texts of the numbers;
-/// empty
-/// sentences and tables without a row go, and so do columns without a cell behind the first one.
+/// Chooses the unit of each column by its largest number (um, kN, MPa, deg, ...) and writes the texts of the numbers.
+/// Removes empty sentences, tables without rows, and empty columns other than the first.
 void typeset(Brief& brief);
 
 /// A number as a person reads it: two digits of its bar and the value as far as that reaches; six digits where the bar
