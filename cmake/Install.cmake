@@ -10,7 +10,7 @@ configure_file(${PROJECT_SOURCE_DIR}/docs/whirl.1 ${PROJECT_BINARY_DIR}/install/
 install(FILES ${PROJECT_BINARY_DIR}/install/whirl.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/whirl ${PROJECT_SOURCE_DIR}/scripts/whirl_plot DESTINATION ${WHIRL_PYTHON_DIR}
-        FILES_MATCHING PATTERN "*.py")
+        FILES_MATCHING PATTERN "*.py" PATTERN "*.js")
 # The version that Python's importlib.metadata finds.
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/install/METADATA
      CONTENT "Metadata-Version: 2.1\nName: whirl\nVersion: @PROJECT_VERSION@\nSummary: @PROJECT_DESCRIPTION@\n" @ONLY)
@@ -43,6 +43,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # the libraries that the program is linked with, by dpkg-shlibdeps
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, libopenblas0-pthread, python3, python3-numpy, python3-h5py, python3-matplotlib, python3-yaml")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libjs-chart.js")  # charts of the report; without it there are pictures
 if(WHIRL_NATIVE)
   # A program that is tuned for one processor does not run on an older one.
   set(CPACK_DEBIAN_PACKAGE_RELEASE native)

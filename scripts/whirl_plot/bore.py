@@ -57,32 +57,39 @@ def shade(axis, x, y):
     axis.add_artist(Polygon(np.column_stack([x, y]), color=SHADE, linewidth=0, zorder=0))
 
 
+def outline(study, b):
+    """Lines (x, y in m, colour, width, dash 0 solid or 2 dotted) of a bore: first how far the journal can go, closed, then its pads."""
+    if study.has("bearings/outline_x", "bearings/outline_y"):
+        return [(*(study.get(f"bearings/outline_{k}")[b] for k in "xy"), INK, 1.2, 0)]
+    pads = pads_of(study, b)
+    if not pads:
+        return []
+    angle = np.linspace(0, 2 * np.pi, 361)
+    # A pad at the bottom leaves the top open: the dotted line goes on as the circle of its radius.
+    circle = np.min([ox * np.cos(angle) + oy * np.sin(angle) + np.sqrt(np.maximum(r**2 - (ox * np.sin(angle) - oy * np.cos(angle))**2, 0))
+                     for ox, oy, r, _, _ in pads], axis=0)
+    wall = reach(pads, angle, 361)
+    radius = np.minimum(wall, circle) if len(pads) == 1 else np.minimum(wall, 1.3 * circle)
+    whole = all(arc >= 2 * np.pi for *_, arc in pads)
+    found = [(radius * np.cos(angle), radius * np.sin(angle), INK if whole else GREY, 1.2 if whole else 0.9, 0 if whole else 2)]
+    for ox, oy, r, middle, arc in pads if not whole else []:
+        t = middle + np.linspace(-0.5, 0.5, 361) * arc
+        px, py = ox + r * np.cos(t), oy + r * np.sin(t)
+        # Only the part that the journal can reach; another pad is nearer elsewhere.
+        reached = np.hypot(px, py) <= reach(pads, np.arctan2(py, px), 361) * (1 + 1e-6)
+        found.append((np.where(reached, px, np.nan), np.where(reached, py, np.nan), INK, 1.8, 0))
+    return found
+
+
 def draw_clearance(axis, study, b, points=()):
     """Pads as thick arcs; dotted between them how far the journal could go; the panel holds it and `points` (x, y in um)."""
-    if study.has("bearings/outline_x", "bearings/outline_y"):
-        x, y = (study.get(f"bearings/outline_{k}")[b] * 1e6 for k in "xy")
-        shade(axis, x, y)
-        axis.plot(x, y, color=INK, linewidth=1.2)
-    else:
-        pads = pads_of(study, b)
-        if not pads:
-            return False
-        angle = np.linspace(0, 2 * np.pi, 361)
-        # A pad at the bottom leaves the top open: the dotted line goes on as the circle of its radius.
-        circle = np.min([ox * np.cos(angle) + oy * np.sin(angle) + np.sqrt(np.maximum(r**2 - (ox * np.sin(angle) - oy * np.cos(angle))**2, 0))
-                         for ox, oy, r, _, _ in pads], axis=0)
-        wall = reach(pads, angle, 361)
-        radius = np.minimum(wall, circle) if len(pads) == 1 else np.minimum(wall, 1.3 * circle)
-        x, y = radius * np.cos(angle) * 1e6, radius * np.sin(angle) * 1e6
-        whole = all(arc >= 2 * np.pi for *_, arc in pads)
-        shade(axis, x, y)
-        axis.plot(x, y, color=INK if whole else GREY, linewidth=1.2 if whole else 0.9, linestyle="-" if whole else ":")
-        for ox, oy, r, middle, arc in pads if not whole else []:
-            t = middle + np.linspace(-0.5, 0.5, 361) * arc
-            px, py = ox + r * np.cos(t), oy + r * np.sin(t)
-            # Only the part that the journal can reach; another pad is nearer elsewhere.
-            reached = np.hypot(px, py) <= reach(pads, np.arctan2(py, px), 361) * (1 + 1e-6)
-            axis.plot(np.where(reached, px, np.nan) * 1e6, np.where(reached, py, np.nan) * 1e6, color=INK, linewidth=1.8)
+    lines = outline(study, b)
+    if not lines:
+        return False
+    x, y = (values * 1e6 for values in lines[0][:2])
+    shade(axis, x, y)
+    for px, py, colour, width, dash in lines:
+        axis.plot(px * 1e6, py * 1e6, color=colour, linewidth=width, linestyle=":" if dash else "-")
     axis.plot(0, 0, "+", color=GREY, markersize=7)
     side = 1.08 * max(np.nanmax(np.abs(v)) for v in (x, y, *points))
     axis.set_xlim(-side, side)

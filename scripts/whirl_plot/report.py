@@ -2,30 +2,32 @@
 import base64
 import hashlib
 import html
+import math
 import re
 import sys
 import time
 
 from . import __main__ as plot
-from . import brief, style, sweep_tables, tables
+from . import brief, live, style, sweep_tables, tables
 from .campbell import EITHER
 from .manifest import register
 from .subject import Drawn, results_directory, said_in_a_sentence
-from .units import digits, person, scale_of, with_bar
+from .units import digits, reading, with_bar
 
 STYLE = """
 :root{--ink:#222;--grey:#6b7280;--line:#e3e7ec;--blue:#0b62a4;--bad:#c8102e}
 body{font:15px/1.5 system-ui,'DejaVu Sans',sans-serif;color:var(--ink);max-width:1180px;margin:0 auto;padding:1.5em}
 h1{font-size:1.75em;margin:.2em 0 0} h2{font-size:1.35em;margin:2.2em 0 .3em;border-bottom:2px solid var(--line);padding-bottom:.2em}
 h3{font-size:1.05em;margin:1.4em 0 .2em} .note{color:var(--grey);font-size:.88em;margin:.2em 0 1em;max-width:75em}
-nav{margin:1em 0;padding:.6em .9em;background:#f3f6f9;border-radius:6px} nav a{margin-right:1.1em;white-space:nowrap} a{color:var(--blue)}
-table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-align:left;font-weight:600;padding:.4em 0;font-size:1.05em}
+nav{margin:1em 0;padding:.6em .9em;background:#f3f6f9;border-radius:6px} nav a{display:inline-block;margin-right:1.1em} a{color:var(--blue)}
+table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-align:left;font-weight:600;padding:.4em 0;font-size:1.05em;white-space:nowrap}
 th,td{padding:.25em 1.1em .25em 0;text-align:left;border-bottom:1px solid var(--line);vertical-align:top} th{color:var(--grey);font-weight:600}
-td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
+td.name{white-space:nowrap} td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
 img{max-width:100%;border:1px solid var(--line);border-radius:4px} details{margin:.7em 0} summary{cursor:pointer;color:var(--blue)}
 body{counter-reset:figures tables} figcaption::before{counter-increment:figures;content:"Figure " counter(figures) ". ";font-weight:600}
 caption:not(:empty)::before{counter-increment:tables;content:"Table " counter(tables) ". "}
 @media print{nav{display:none} body{max-width:none;padding:0;font-size:10pt} figure,table,tr{break-inside:avoid} h2{break-after:avoid} .scroll{overflow:visible}}
+@media (max-width:700px){body{padding:.8em;overflow-wrap:break-word} caption{white-space:normal;min-width:16em} td.name{white-space:normal} th,td{padding-right:.8em}}
 .bad{color:var(--bad);font-weight:600} .warn{color:var(--bad);margin:.2em 0;padding-left:1.2em} .scroll{overflow-x:auto} pre{background:#f3f6f9;padding:.8em;overflow-x:auto;font-size:.85em}
 """
 
@@ -106,29 +108,48 @@ def anchor(name):
     return "s-" + re.sub(r"[^A-Za-z0-9]+", "-", name)
 
 
-def picture(path):
+def picture(path, subject=None):
+    """A picture; of a study, or of the run, with the chart that takes its place on a screen, where there is one."""
+    chart = live.chart_of(subject, path.stem.rsplit(".", 1)[-1]) if subject is not None else ""
     kind = re.sub(r"\d+$", "", path.stem.rsplit(".", 1)[-1])
-    words = CAPTIONS.get(kind) or CAPTIONS.get(re.sub(r"-\d*$", "", kind), "")
+    words = CAPTIONS.get(kind, "")
     for head, told in BY_PLACE.items():
-        if kind.startswith(head):
+        if not words and kind.startswith(head):
             words = told.format(kind.removeprefix(head).replace("-", " "))
+    words = words or CAPTIONS.get(re.sub(r"-\d*$", "", kind), "")
     words = words or f"{kind.replace('-', ' ').capitalize()}."
     data = base64.b64encode(path.read_bytes()).decode("ascii")
-    return f"<figure><img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption title='{escape(path.name)}'>{escape(words)}</figcaption></figure>"
+    return f"<figure>{chart}<img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption title='{escape(path.name)}'>{escape(words)}</figcaption></figure>"
+
+
+UNITS = (("_rad_s", "rad/s"), ("_rpm", "rpm"), ("_rad", "rad"), ("_s", "s"))  # at the ends of names
+
+
+def detail(name, value, bar):
+    """`whirl_frequency_rad_s` as `whirl frequency 220.4 rad/s`."""
+    tail, unit = next(((tail, unit) for tail, unit in UNITS if name.endswith(tail)), ("", "1"))
+    words = name.removesuffix(tail).replace("_", " ")
+    return f"{words} {reading(value, bar, unit) if isinstance(value, (int, float)) and not isinstance(value, bool) else digits(value)}"
+
+
+def details(event):
+    """All that summary.json says of a bifurcation beside its type and place."""
+    usual = ("type", "parameter", "value", "unit", "uncertainty")
+    return ", ".join(detail(k, v, event.get(f"uncertainty_{k}")) for k, v in event.items()
+                     if k not in usual and v is not None and not (k.startswith("uncertainty_") and k.removeprefix("uncertainty_") in event))
 
 
 def all_values(study):
     """Everything of summary.json that the tables above may have left out."""
-    usual = ("type", "parameter", "value", "unit", "uncertainty")
-    rows = [[k, digits(v.value, 7) if v.uncertainty is None else with_bar(v.value, v.uncertainty), v.unit if v.unit != "1" else "", "" if v.unit in ("1", "") else person(v.value, v.unit)]
-            for k, v in study.values.items()]
-    out = [tables.Table("All values", ["name", "value", "unit", "reads"], rows)]
-    more = [[b.get("type"), with_bar(b.get("value"), b.get("uncertainty")), ", ".join(f"{k} {digits(v, 5)}" for k, v in b.items() if k not in usual)]
-            for b in study.bifurcations]
+    rows = [[k, reading(v.value, v.uncertainty, v.unit)] for k, v in study.values.items()]
+    out = [tables.Table("All values", ["name", "value"], rows, "in units that read well; summary.json has all digits in the units of the program")]
+    more = [[b.get("type"), f"{with_bar(b.get('value'), b.get('uncertainty'))} {b.get('unit', '')}".strip(), details(b)] for b in study.bifurcations]
     out.append(tables.Table("All about the bifurcations", ["type", "value", "more"], more))
-    modes = [[digits(m.get("speed"), 6), digits(m.get("mode"), 4), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4),
+    hertz = lambda v: v / (2 * math.pi) if isinstance(v, (int, float)) else None  # noqa: E731
+    modes = [[f"{digits(m.get('speed'), 6)} {m.get('speed_unit', '')}".strip(), digits(m.get("mode"), 4), with_bar(hertz(m.get("imag")), hertz(m.get("imag_uncertainty"))),
+              with_bar(m.get("real"), m.get("real_uncertainty")), with_bar(m.get("log_decrement"), m.get("log_decrement_uncertainty")),
               digits(m.get("damping_ratio"), 4), m.get("whirl") or "", m.get("stability") or ""] for m in study.modes]
-    out.append(tables.Table("All modes", ["speed", "mode", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "damping ratio", "whirl", ""], modes,
+    out.append(tables.Table("All modes", ["speed", "mode", "frequency [Hz]", "real part [1/s]", "log. decrement", "damping ratio", "whirl", ""], modes,
                             EITHER if any(m.get("whirl") == "either" for m in study.modes) else ""))
     if study.kind == "sweep":
         out += sweep_tables.everything(study, tables.Table)
@@ -154,13 +175,13 @@ def section(study, pictures):
     if isinstance(seconds, (int, float)):
         facts.append(f"{seconds:.1f} s")
     return "\n".join([f"<h2 id='{anchor(study.name)}'>{escape(study.name)}</h2><p class=note>{', '.join(facts)}</p>", warned(study.warnings),
-                      *(show(t) for t in tables.findings(study)), *(picture(p) for p in pictures), *all_values(study)])
+                      *(show(t) for t in tables.findings(study)), *(picture(p, study) for p in pictures), *all_values(study)])
 
 
 def in_brief(results):
     """One line a study, and its warnings below it."""
     said = [(s, brief.of(s)) for s in results.studies]
-    rows = "".join(f"<tr><td style='white-space:nowrap'><a href='#{anchor(s.name)}'>{escape(s.name)}</a></td><td>{escape(words)}{warned(s.warnings)}</td></tr>"
+    rows = "".join(f"<tr><td class=name><a href='#{anchor(s.name)}'>{escape(s.name)}</a></td><td>{escape(words)}{warned(s.warnings)}</td></tr>"
                    for s, words in said if words or s.warnings)
     return f"<h2 id=brief>In brief</h2><table>{rows}</table>" if rows else ""
 
@@ -175,8 +196,7 @@ def at_service_speed(results):
         value, bar, unit = fact.get("value"), fact.get("uncertainty"), fact.get("unit", "")
         if unit == "K" and value is not None:
             value, unit = value - 273.15, "\u00b0C"
-        factor, name = scale_of(unit, value or 0.0)
-        shown = "" if value is None else f"{with_bar(value * factor, None if bar is None else bar * factor)} {name}".strip()
+        shown = "" if value is None else reading(value, bar, unit)
         rows.append([fact.get("what", ""), shown, fact.get("place", ""), fact.get("mark", ""), fact.get("study") or ""])
     table = tables.Table("", ["", "value", "place", "", "study"], rows)
     return f"<h2 id=service>At the service speed, {escape(with_bar(service.get('value'), None))} {escape(service.get('unit', ''))}</h2>{show(table)}"
@@ -250,16 +270,16 @@ def page_of(results):
     together = [p for p in general if p.stem != "machine"]
     conventions = tables.Table("Conventions", ["", ""], [list(c) for c in CONVENTIONS])
     inputs = tables.inputs(results)
-    return "\n".join([
-        f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title><style>{STYLE}</style>",
-        f"<h1>{title}</h1><p class=note>{', '.join(facts)}</p>",
-        f"<nav><a href='#machine'>The machine</a>{links}<a href='#options'>Options</a></nav>",
+    body = "\n".join([
         at_service_speed(results), warned([str(w) for w in summary.get("warnings", [])] if isinstance(summary.get("warnings"), list) else []),
         in_brief(results), "<h2 id=machine>The machine</h2>", *(picture(p) for p in machine), *(show(t) for t in inputs), show(conventions, folded=True),
-        *([f"<h2 id=together>All together</h2>{''.join(picture(p) for p in together)}"] if together else []),
+        *([f"<h2 id=together>All together</h2>{''.join(picture(p, results) for p in together)}"] if together else []),
         *(section(s, p) for s, p in studies), left_over(results),
-        f"<h2 id=options>Options in force</h2><p class=note>as the deck was understood, every default written out; resolved.yaml beside this page is that deck</p>{options_in_force(results)}",
-        "</html>"])
+        f"<h2 id=options>Options in force</h2><p class=note>as the deck was understood, every default written out; resolved.yaml beside this page is that deck</p>{options_in_force(results)}"])
+    return "\n".join([
+        f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title><style>{STYLE}{live.STYLE}</style>",
+        f"<h1>{title}</h1><p class=note>{', '.join(facts)}</p>",
+        f"<nav><a href='#machine'>The machine</a>{links}<a href='#options'>Options</a></nav>{live.note(body)}", body, live.scripts(body), "</html>"])
 
 
 def main(argv):

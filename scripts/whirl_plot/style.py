@@ -75,14 +75,19 @@ def service_speed_of(subject):
     return value * factor if factor and isinstance(value, (int, float)) else None
 
 
-def mark_service(axis, subject, unit):
-    """A line at the service speed, where it lies on an axis of speeds in `unit`."""
+def service_speed_in(subject, unit):
+    """The service speed in the unit of an axis of speeds; None if the deck states none, or the axis shows something else."""
     speed = service_speed_of(subject)
     factor = {"rpm": 30 / np.pi, "Hz": 0.5 / np.pi, "rad/s": 1}.get(unit)
-    if speed is None or factor is None:
+    return None if speed is None or factor is None else speed * factor
+
+
+def mark_service(axis, subject, unit):
+    """A line at the service speed, where it lies on an axis of speeds in `unit`."""
+    at = service_speed_in(subject, unit)
+    if at is None:
         return
     low, high = axis.get_xlim()
-    at = speed * factor
     if low <= at <= high:
         axis.axvline(at, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), zorder=0.6)
         right = at < low + 0.1 * (high - low)

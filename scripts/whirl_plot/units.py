@@ -68,6 +68,14 @@ def person(value, unit, count=5):
     return f"{digits(value * factor, count)} {name}".strip()
 
 
+def reading(value, bar, unit):
+    """A number of summary.json and its bar in the unit that reads best."""
+    if value is None:
+        return "\u2013"
+    factor, name = scale_of(unit, value)
+    return f"{with_bar(value * factor, None if bar is None else bar * factor)} {name}".strip()
+
+
 def quantity(text, count=4):
     """A quantity of resolved.yaml, `0.00018 m`, as a person reads it; what is none stays as it is."""
     match = re.fullmatch(r"\s*([-+0-9.eE]+)\s+(\S.*)", str(text))

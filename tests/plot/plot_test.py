@@ -95,7 +95,7 @@ with tempfile.TemporaryDirectory() as name:
     check(page.images == len(list(whole.glob("*.png"))), f"the report has {page.images} pictures")
     check(not page.links, f"the report needs {page.links}")
     check("report.html" in (whole / "manifest.txt").read_text().splitlines(), "the manifest does not name the report")
-    for words in ("42165.66", "Hopf point", "5025 \u00b1 12", "<A & B>", "counter-clockwise", "213.4"):
+    for words in ("42.166 t", "Hopf point", "5025 \u00b1 12", "<A & B>", "counter-clockwise", "213.4"):
         check(words in page.text, f"the report does not say {words}")
 
     # A run that ended early: no summary, a study without points, one with a single point, one of an unknown kind. All figures are made,

@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+"""The charts of a report without a browser: their data are those of the results, every curve fits its panel, and the page has its pictures
+where the library is missing."""
+import contextlib
+import json
+import pathlib
+import re
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import command  # noqa: E402
+import synthetic  # noqa: E402
+from whirl_plot import live, live_response, style  # noqa: E402
+from whirl_plot.subject import Drawn  # noqa: E402
+
+RPM = 30 / np.pi
+CHARTS = {"modes.campbell", "modes.shapes-3d", "generator_pair.response", "generator_pair.response-bearings", "balanced.equilibria", "pair_G2.5.cycles-vertical",
+          "pair_G2.5.cycles-horizontal", "pair_G2.5.orbits", "pair_G6.3.cycles-vertical", "pair_G6.3.cycles-horizontal", "pair_G6.3.orbits", "period_two.history", "bifurcations"}
+
+
+@contextlib.contextmanager
+def with_library(text):
+    """Pages hold this text in place of the library, none if it is None."""
+    real, live.library = live.library, lambda: text
+    try:
+        yield
+    finally:
+        live.library = real
+
+
+def close(found, values, tolerance=1e-5):
+    found = np.array([np.nan if v is None else v for v in found], float)
+    return np.allclose(found, values, rtol=tolerance, atol=tolerance * np.nanmax(np.abs(values)), equal_nan=True)
+
+
+def named(chart, name, panel=0, option=None, **more):
+    return [c for c in chart["lines"] if c.get("n") == name and c.get("p", 0) == panel and c.get("o") == option and all(c.get(k) == v for k, v in more.items())]
+
+
+def whole(chart, what):
+    """Every curve belongs to a panel and to what can be chosen; its columns are equally long and hold numbers."""
+    if chart.get("kind") == "shapes":
+        assert chart["modes"] and all(len(v) == len(chart["z"]) for m in chart["modes"] for d in "xy" for v in m[d]), what
+        return
+    assert chart["panels"] and all(len(p["x"]) == len(p["y"]) == 2 for p in chart["panels"]), what
+    options = len(chart.get("choose", {"of": [0]})["of"])
+    for c in chart["lines"]:
+        columns = [c["x"], c["y"], *(v for *_, v in c.get("more", [])), *(c[k] for k in ("t", "at") if k in c)]
+        assert len({len(v) for v in columns}) == 1 and c.get("p", 0) < len(chart["panels"]) and c.get("o", 0) < options, (what, c.get("n"))
+        assert len(c.get("s", "")) in (0, len(c["x"]), len(c["x"]) - 1) and all(int(k, 36) < len(chart["styles"]) for k in c.get("s", "")), (what, c.get("n"))
+        assert all(v is None or np.isfinite(v) for v in [*c["x"], *c["y"]]) and re.fullmatch("#[0-9a-f]{6}", c["c"]), (what, c.get("n"))
+    shown = {c.get("p", 0) for c in chart["lines"]}
+    assert shown == set(range(len(chart["panels"]))), (what, shown)
+
+
+def charts_of(page):
+    """Name of the picture -> its chart, of all figures of a page that have both."""
+    found = {}
+    for figure in re.findall(r"<figure>(.*?)</figure>", page, re.DOTALL):
+        data = re.search(r"<div class=live><script type='application/json'>(.*?)</script></div>", figure, re.DOTALL)
+        if data:
+            found[re.search(r"<img alt='([^']*)'", figure)[1]] = json.loads(data[1])
+    return found
+
+
+def values(folder, charts):
+    with Drawn(folder) as results:
+        # Campbell: frequency and damping of each mode, red where it grows.
+        chart, study = charts["modes.campbell"], results["modes"]
+        mode = study.get("spectrum/mode") == 1
+        top, = named(chart, "mode 1")
+        assert close(top["x"], study.get("spectrum/speed")[mode] * RPM) and close(top["y"], study.get("spectrum/frequency")[mode] / (2 * np.pi))
+        assert top["more"][0][0] == "log. decrement" and close(top["more"][0][2], study.get("spectrum/log_decrement")[mode], 1e-4)
+        grows = [chart["styles"][int(s, 36)]["c"] == style.BAD for s in top["s"]]
+        decrement = study.get("spectrum/log_decrement")[mode]
+        assert any(grows) and not all(grows) and grows == list((decrement[:-1] < 0) & (decrement[1:] < 0)), grows
+        assert {k["t"] for k in chart["keys"]} >= {"unstable", "forward", "backward"} and len(named(chart, "critical speeds")[0]["t"]) == 5
+
+        # Bode: amplitude and lag, gaps without an answer, peaks that are motions.
+        chart, study = charts["generator_pair.response"], results["generator pair"]
+        answer = study.get("response/answer") > 0
+        top, lag = named(chart, "y, vertical", 0, 0)[0], named(chart, "y, vertical", 1, 0)[0]
+        assert close(top["y"], np.where(answer, study.get("response/y_amplitude")[:, 0] * 1e6, np.nan)), "amplitude"
+        assert close(lag["y"], np.where(answer, np.mod(-np.degrees(study.get("response/y_phase")[:, 0]), 360), np.nan)), "lag"
+        assert chart["panels"][0]["y"] == ["amplitude, 0-peak", "\u00b5m"] and chart["panels"][1]["reverse"] and chart["panels"][0]["bands"]
+        peak, = named(chart, "peaks", 0, 0)
+        assert peak["x"] == [2683] and "AF 12.4" in peak["t"][0] and "25.5 %" in peak["t"][0], peak
+        assert len(charts["generator_pair.response-bearings"]["choose"]["of"]) == 5
+
+        # Branches: the points that the cursor finds are those computed; a mark at each bifurcation; the kept orbits.
+        chart, study = charts["pair_G6.3.cycles-vertical"], results["pair, G6.3"]
+        high = [c for c in named(chart, "pair, G6.3", 0, 2) if c.get("bare")][0]
+        assert close(high["x"], study.get("branch/parameter")) and close(high["y"], study.get("branch/y_max")[:, 2] * 1e6)
+        assert [int(s) for s in high["s"]] == [int(s == 0) for s in study.get("branch/stable")], "stability of the points"
+        assert high["at"] == list(range(140)) and high["more"][0][0] == "largest multiplier"
+        marks = [c for c in chart["lines"] if c.get("m") and c.get("o") == 2]
+        assert {c["n"] for c in marks} == {"period doubling (flip)", "Neimark-Sacker", "limit point of cycles", "early end"}, {c["n"] for c in marks}
+        assert any("film is broken through" in c["t"][0] for c in marks)
+        orbits = [c for c in named(chart, "pair, G6.3", 1, 2) if c.get("f") is not None]
+        kept = study.orbits
+        assert [c["f"] for c in orbits] == [o.point for o in kept] and close(orbits[3]["x"][:-1], kept[3].x[::len(kept[3].x) // 96, 2] * 1e6), "orbits"
+        assert chart["panels"][1]["equal"] and named(chart, "clearance", 1, 2) and orbits[0]["x"][0] == orbits[0]["x"][-1]
+        assert {c["n"] for c in charts["bifurcations"]["lines"] if not c.get("m")} >= {"balanced", "pair, G2.5", "pair, G6.3"}
+
+        # Time histories end where the motion ends; shapes are those of the modes.
+        chart, study = charts["period_two.history"], results["period two"]
+        line, = named(chart, "x", 0, 0)
+        assert line["x"][-1] == 0 and close(line["y"], study.get("orbit/x")[:, 0] * 1e6)
+        chart, study = charts["modes.shapes-3d"], results["modes"]
+        assert len(chart["modes"]) == 6 and chart["modes"][1]["t"].startswith("2: 12.589 Hz"), [m["t"] for m in chart["modes"]]
+        x = np.array(chart["modes"][1]["x"][0]) + 1j * np.array(chart["modes"][1]["x"][1])
+        wave = np.sin(2 * np.pi * np.array(chart["z"]) / 32)
+        assert abs(abs(np.vdot(wave, x)) / np.linalg.norm(wave) / np.linalg.norm(x) - 1) < 1e-4, "shape of mode 2"
+
+
+def page(folder):
+    """Each chart stands before the picture that paper shows; names of studies are text; without the library there are pictures only."""
+    synthetic.make(folder)
+    with (folder / "manifest.txt").open("a") as listed:  # pictures of nothing: what they show is tested elsewhere
+        for picture in sorted(CHARTS | {"modes.shapes", "machine"}):
+            (folder / f"{picture}.png").touch()
+            listed.write(f"{picture}.png\n")
+    with h5py.File(folder / "results.h5", "a") as root:
+        for name in ("pair, G2.5", "pair, G6.3"):
+            root[f"studies/{name}/orbits"]["point"] = np.linspace(0, 139, 20).astype(int)
+        root["studies/pair, G2.5"].attrs["unbalance"] = "</script><b>"
+    with with_library("/*! a library */"):
+        done = command.call("report", folder)
+        assert done.returncode == 0 and not done.stderr, done.stderr
+        text = (folder / "report.html").read_text()
+        charts = charts_of(text)
+        assert set(charts) == CHARTS, set(charts) ^ CHARTS
+        for name, chart in charts.items():
+            whole(chart, name)
+        values(folder, charts)
+        assert text.count("<script>/*! a library */</script>") == 1 and "class WhirlShapes" in text and "charts-note" in text
+        assert not re.search(r"(src|href)=(?!['\"]?(data:|#))", re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)), "the page needs another file"
+        assert "@media print" in live.STYLE and ".charted>img{display:none}" in live.STYLE
+    with with_library(None):
+        done = command.call("report", folder)
+        bare = (folder / "report.html").read_text()
+    assert done.returncode == 0 and not done.stderr and "<script" not in bare and "class=live" not in bare, done.stderr
+    assert bare.count("<img") == text.count("<img"), "pictures depend on the library"
+    # A chart that fails costs itself only.
+    real, live_response.history = live_response.history, lambda *_: 1 / 0
+    try:
+        with with_library("/*! a library */"):
+            done = command.call("report", folder)
+    finally:
+        live_response.history = real
+    assert done.returncode == 0 and "period two: the chart 'history' cannot be made" in done.stderr and set(charts_of((folder / "report.html").read_text())) == CHARTS - {"period_two.history"}, done.stderr
+
+
+def numbers(_):
+    """Six digits, whole numbers without a point, no number where there is none."""
+    assert live.rounded([1234.5678, -0.00123456789, 0, np.nan, np.inf, 5e9, 3.0]) == [1234.57, -0.00123457, 0, None, None, 5000000000, 3]
+    assert json.dumps(live.rounded([0.1 + 0.2, 1 / 3, 2e-17])) == "[0.3, 0.333333, 2e-17]"
+
+
+def licence(_):
+    """The library of Debian, where it is installed, stands in the page with its licence."""
+    if not any(p.is_file() for p in live.LIBRARY):
+        print("libjs-chart.js is not installed")
+        return
+    text = live.library()
+    assert "Chart.js v" in text[:5000] and "Permission is hereby granted" in text[:5000] and "</script" not in text
+
+
+for check in (numbers, licence, page):
+    with tempfile.TemporaryDirectory() as name:
+        check(pathlib.Path(name) / "x")
+print("the charts hold the results")
