@@ -2,76 +2,7 @@
 // Each <div class=live> holds its data as JSON, as live.py describes them. Without this script the page shows its pictures.
 'use strict';
 (() => {
-  const INK = '#222', GREY = '#7a7a7a', LIGHT = '#e3e7ec';
-  const DASHES = {0: [], 1: [6, 4], 2: [2, 3], 3: [9, 3, 2, 3]};
-  const GLYPHS = {circle: '●', rect: '■', rectRot: '◆', triangle: '▲', cross: '✚', crossRot: '✖'};
-  const make = (tag, parent, words = {}, text = '') => {
-    const e = parent.appendChild(document.createElement(tag));
-    Object.assign(e, words);
-    if (text) e.textContent = text;
-    return e;
-  };
-  const number = v => v == null || !isFinite(v) ? '–' : v === 0 ? '0' : String(Math.abs(v) < 1e-4 || Math.abs(v) >= 1e7
-    ? v.toExponential(3) : +v.toPrecision(5)).replace(/-/g, '−');
-  const axis = ([name, unit]) => unit ? `${name} [${unit}]` : name;
-  const valued = (v, unit) => unit ? `${number(v)} ${unit}` : number(v);
-
-  Chart.defaults.animation = false;
-  Chart.defaults.font.family = "system-ui, 'DejaVu Sans', sans-serif";
-  Chart.defaults.color = INK;
-
-  // Bands of unstable stretches, lines at named places, and the frame that is dragged.
-  const ground = state => ({
-    id: 'ground',
-    // Equal scales follow from the room that titles and numbers leave, which is known only now.
-    afterLayout(chart) {
-      const a = chart.chartArea, size = `${chart.width} ${chart.height}`, known = state.room || [];
-      const same = known[2] === size;
-      if (!state.panel.equal || !(a.width > 0 && a.height > 0) || same && (known[3] > 3 || a.width === known[0] && a.height === known[1])) return;
-      state.room = [a.width, a.height, size, same ? known[3] + 1 : 0];  // numbers that change change the room: not for ever
-      queueMicrotask(() => { state.fit(); chart.update('none'); });
-    },
-    beforeDatasetsDraw(chart) {
-      const {ctx, chartArea: a, scales: {x}} = chart;
-      ctx.save();
-      ctx.beginPath();
-      ctx.rect(a.left, a.top, a.width, a.height);
-      ctx.clip();
-      for (const [from, to] of state.panel.bands || []) {
-        ctx.fillStyle = 'rgba(200,16,46,.07)';
-        const l = x.getPixelForValue(from);
-        ctx.fillRect(l, a.top, x.getPixelForValue(to) - l, a.height);
-      }
-      for (const [at, words] of state.panel.places || []) {
-        const p = x.getPixelForValue(at);
-        ctx.strokeStyle = GREY;
-        ctx.setLineDash([2, 3]);
-        ctx.beginPath();
-        ctx.moveTo(p, a.top);
-        ctx.lineTo(p, a.bottom);
-        ctx.stroke();
-        ctx.fillStyle = GREY;
-        ctx.save();
-        ctx.translate(p - 3, a.top + 4);
-        ctx.rotate(-Math.PI / 2);
-        ctx.textAlign = 'right';
-        ctx.font = '10px ' + Chart.defaults.font.family;
-        ctx.fillText(words, 0, 0);
-        ctx.restore();
-      }
-      ctx.restore();
-    },
-    afterDraw(chart) {
-      const {ctx} = chart, f = state.frame;
-      if (!f) return;
-      ctx.save();
-      ctx.fillStyle = 'rgba(11,98,164,.12)';
-      ctx.strokeStyle = '#0b62a4';
-      ctx.fillRect(f.x0, f.y0, f.x1 - f.x0, f.y1 - f.y0);
-      ctx.strokeRect(f.x0, f.y0, f.x1 - f.x0, f.y1 - f.y0);
-      ctx.restore();
-    },
-  });
+  const {DASHES, GLYPHS, GREY, LIGHT, axis, ground, make, number, valued, wrapped} = Live;
 
   class Figure {
     constructor(place, data) {
@@ -122,9 +53,14 @@
     }
 
     swatch(parent, colour, dash, words, marker) {
-      const line = make('span', parent, {className: 'swatch'}, marker ? GLYPHS[marker] : '');
-      if (marker) line.style.color = colour;
-      else line.style.borderTop = `3px ${dash === 2 ? 'dotted' : dash ? 'dashed' : 'solid'} ${colour}`;
+      const place = make('span', parent, {className: 'swatch'}, marker ? GLYPHS[marker] : '');
+      if (marker) place.style.color = colour;
+      else place.innerHTML = '<svg width="24" height="6"><line x1="0" y1="3" x2="24" y2="3" stroke-width="2.5"/></svg>';
+      const drawn = place.querySelector('line');
+      if (drawn) {
+        drawn.setAttribute('stroke', colour);
+        drawn.setAttribute('stroke-dasharray', DASHES[dash || 0].join(' '));
+      }
       parent.append(' ' + words);
     }
 
@@ -197,7 +133,7 @@
         type: 'line', data: {datasets: []}, plugins: [ground(state)],
         options: {
           responsive: true, maintainAspectRatio: false, layout: {padding: {right: 16}},
-          interaction: {mode: 'nearest', axis: panel.by || 'xy', intersect: false},
+          interaction: {mode: 'value', axis: panel.by || 'xy', intersect: false},
           onHover: (event, items, c) => this.pointed(c, items),
           scales: {
             x: {type: 'linear', title: title(axis(panel.x)), grid: {color: LIGHT}, ticks: {maxRotation: 0, includeBounds: false, font: {size: 11}, callback: number}},
@@ -211,7 +147,7 @@
               filter: item => !item.dataset.line.quiet, displayColors: false, boxPadding: 2, bodyFont: {size: 11}, titleFont: {size: 11},
               callbacks: {
                 title: items => items.length && !panel.equal && !items[0].dataset.line.t ? `${panel.x[0]} ${valued(items[0].parsed.x, panel.x[1])}` : '',
-                label: item => this.wrapped(this.words(item.chart, item), item.chart.width),
+                label: item => wrapped(this.words(item.chart, item), item.chart.width),
               },
             },
           },
@@ -220,16 +156,6 @@
       chart.whirl = state;
       this.listen(canvas, chart);
       return chart;
-    }
-
-    // Long lines would leave a narrow screen.
-    wrapped(words, width) {
-      const most = Math.max(24, Math.min(60, width / 7.5)), lines = [''];
-      for (const part of words.split(/(?<=,) /)) {
-        if (lines[lines.length - 1] && (lines[lines.length - 1] + ' ' + part).length > most) lines.push(part);
-        else lines[lines.length - 1] = (lines[lines.length - 1] + ' ' + part).trim();
-      }
-      return lines;
     }
 
     pointed(chart, items) {

@@ -34,7 +34,7 @@ STYLE = """
 .controls select{font:inherit;max-width:100%;min-width:0;padding:.1em} .controls label{display:inline-flex;gap:.4em;align-items:center;max-width:100%;min-width:0}
 .key{font:inherit;border:1px solid var(--line);border-radius:4px;background:#fff;padding:.1em .5em;cursor:pointer;color:var(--ink)}
 .key[aria-pressed=false].toggle{color:var(--grey);text-decoration:line-through;background:#f3f6f9} .style{color:var(--grey)} .reset{border-color:var(--blue);color:var(--blue)}
-.swatch{display:inline-block;width:1.3em;vertical-align:middle;text-align:center;line-height:0}
+.swatch{display:inline-block;min-width:1.3em;vertical-align:middle;text-align:center;line-height:0}
 .panels.beside{display:grid;grid-template-columns:minmax(0,1.7fr) minmax(0,1fr);gap:.6em} .chart{position:relative;height:360px;min-width:0} .chart.square,.chart.shapes{height:400px}
 .chart canvas{touch-action:pan-y;width:100%;height:100%} canvas:focus-visible{outline:2px solid var(--blue);outline-offset:2px} .live{border:1px solid var(--line);border-radius:4px;padding:.6em}
 .said{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)} .live,.charts-note{display:none} .has-charts .charts-note{display:block}
@@ -132,4 +132,4 @@ def scripts(page):
     """The library and the scripts at the end of a page that has charts."""
     if "<div class=live>" not in page:
         return ""
-    return "".join(f"<script>{text}</script>\n" for text in (library(), *((HERE / f).read_text(encoding="utf-8") for f in ("live_shapes.js", "live.js"))))
+    return "".join(f"<script>{text}</script>\n" for text in (library(), *((HERE / f).read_text(encoding="utf-8") for f in ("live_base.js", "live_shapes.js", "live.js"))))

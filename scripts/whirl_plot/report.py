@@ -108,18 +108,25 @@ def anchor(name):
     return "s-" + re.sub(r"[^A-Za-z0-9]+", "-", name)
 
 
+def caption(what, subject=None):
+    """What a picture shows, by the end of its name, `shapes-3d-1500`: its kind, and a place or a speed."""
+    kind = re.sub(r"-?\d+$", "", what)
+    if what in CAPTIONS or kind in CAPTIONS:
+        words, number = CAPTIONS.get(what) or CAPTIONS[kind], what.removeprefix(kind).lstrip("-")
+        at = kind.startswith("shapes") and what not in CAPTIONS and number
+        return f"{words.removesuffix('.')}, at {number} {subject.attribute('speed_unit', 'rad/s')}." if at and subject is not None else words
+    for head, told in BY_PLACE.items():
+        if what.startswith(head):
+            return told.format(what.removeprefix(head).replace("-", " "))
+    return f"{kind.replace('-', ' ').capitalize()}."
+
+
 def picture(path, subject=None):
     """A picture; of a study, or of the run, with the chart that takes its place on a screen, where there is one."""
-    chart = live.chart_of(subject, path.stem.rsplit(".", 1)[-1]) if subject is not None else ""
-    kind = re.sub(r"\d+$", "", path.stem.rsplit(".", 1)[-1])
-    words = CAPTIONS.get(kind, "")
-    for head, told in BY_PLACE.items():
-        if not words and kind.startswith(head):
-            words = told.format(kind.removeprefix(head).replace("-", " "))
-    words = words or CAPTIONS.get(re.sub(r"-\d*$", "", kind), "")
-    words = words or f"{kind.replace('-', ' ').capitalize()}."
+    what = path.stem.rsplit(".", 1)[-1]
+    chart = live.chart_of(subject, what) if subject is not None else ""
     data = base64.b64encode(path.read_bytes()).decode("ascii")
-    return f"<figure>{chart}<img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption title='{escape(path.name)}'>{escape(words)}</figcaption></figure>"
+    return f"<figure>{chart}<img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption title='{escape(path.name)}'>{escape(caption(what, subject))}</figcaption></figure>"
 
 
 UNITS = (("_rad_s", "rad/s"), ("_rpm", "rpm"), ("_rad", "rad"), ("_s", "s"))  # at the ends of names
