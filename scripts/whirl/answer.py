@@ -6,6 +6,9 @@ import typing
 import numpy as np
 
 
+UNITS = {"um": "\u00b5m", "degC": "\u00b0C"}  # of the screen, as people print them
+
+
 def plain(text):
     """The text of a number as people write it: `5021.4 \u00b1 6.9`, a minus that is as long as a plus."""
     return text.replace(" +- ", " \u00b1 ").replace("-", "\u2212") if text[:1] in "-(0123456789" else text
@@ -13,7 +16,7 @@ def plain(text):
 
 def in_print(text):
     """Words with numbers among them: `23.20 \u00b1 0.40 \u00b5m at node 4`."""
-    return re.sub(r"(?<=\d )um\b", "\u00b5m", text.replace(" +- ", " \u00b1 "))
+    return re.sub(r"(?<=\d )(um|degC)\b", lambda m: UNITS[m[1]], text.replace(" +- ", " \u00b1 "))
 
 
 class Cell(typing.NamedTuple):
@@ -72,7 +75,7 @@ def _cell(cell, unit):
 def answer(summary):
     """The answer in the entry of a study in summary.json; empty if it has none."""
     brief = summary.get("brief", {})
-    tables = [AnswerTable(t["caption"], [c["name"] for c in t["columns"]], [c["shown"].replace("um", "\u00b5m") for c in t["columns"]],
+    tables = [AnswerTable(t["caption"], [c["name"] for c in t["columns"]], [UNITS.get(c["shown"], c["shown"].replace("um", "\u00b5m")) for c in t["columns"]],
                           [c["unit"] for c in t["columns"]],
                           [[_cell(cell, c["unit"]) for cell, c in zip(row, t["columns"])] for row in t["rows"]], in_print(t.get("note", "")))
               for t in brief.get("tables", [])]

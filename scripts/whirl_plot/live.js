@@ -40,7 +40,7 @@
       const names = new Map();
       // Curves first, then marks; a curve that is solid anywhere is solid here.
       for (const marked of [false, true]) {
-        for (const line of this.data.lines) if (line.n && !line.m === !marked && (!names.has(line.n) || names.get(line.n).d && !line.d)) names.set(line.n, line);
+        for (const line of this.data.lines) if (line.n && !(line.m || line.dots) === !marked && (!names.has(line.n) || names.get(line.n).d && !line.d)) names.set(line.n, line);
       }
       if (names.size > 1) for (const [name, line] of names) this.key(bar, name, line);
       if (names.size > 4) {
@@ -68,7 +68,7 @@
       const button = make('button', bar, {type: 'button', className: 'key toggle'});
       button.dataset.name = name;
       button.setAttribute('aria-pressed', !this.off.has(name));
-      this.swatch(button, line.c, line.d, name, line.m);
+      this.swatch(button, line.c, line.d, name, line.m || (line.dots && 'circle'));
       button.onclick = () => { this.off.has(name) ? this.off.delete(name) : this.off.add(name); this.pressed(bar); this.refresh(); };
     }
 

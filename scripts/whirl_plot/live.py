@@ -38,9 +38,9 @@ STYLE = """
 .panels.beside{display:grid;grid-template-columns:minmax(0,1.7fr) minmax(0,1fr);gap:.6em} .chart{position:relative;height:360px;min-width:0} .chart.square,.chart.shapes{height:400px}
 .chart canvas{touch-action:pan-y;width:100%;height:100%} canvas:focus-visible{outline:2px solid var(--blue);outline-offset:2px} .live{border:1px solid var(--line);border-radius:4px;padding:.6em}
 .said{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)} .live,.charts-note{display:none} .has-charts .charts-note{display:block}
-.has-charts .charted>.live{display:block} .has-charts .charted>img{display:none}
+.has-charts .charted>.live{display:block} .has-charts .charted img{display:none}
 @media (max-width:700px){.panels.beside{grid-template-columns:minmax(0,1fr)} .chart{height:300px} .live{padding:.3em}}
-@media print{.has-charts .charted>.live,.has-charts .charts-note{display:none} .has-charts .charted>img{display:inline}}
+@media print{.has-charts .charted>.live,.has-charts .charts-note{display:none} .has-charts .charted img{display:inline}}
 """
 NOTE = ("Charts show the value under the cursor. Drag a frame to zoom, double-click for the whole range, press the names to switch curves on and off. "
         "With the keyboard: arrows move along the curves, + and \u2212 zoom, 0 shows the whole range. Paper shows the pictures instead.")
@@ -58,8 +58,10 @@ def rounded(values, count=DIGITS):
 
 
 def line(x, y, name=None, panel=0, option=None, colour=GREY, **more):
-    """A curve. `s` gives each point the style of the stretch behind it, `more` = [(name, unit, values)] are values beside y, `t` texts instead."""
-    found = {"x": rounded(x), "y": rounded(y), "c": colour}
+    """A curve. `s` gives each point the style of the stretch behind it, `more` = [(name, unit, values)] are values beside y, `t` texts instead;
+    what nobody reads needs fewer `digits`."""
+    count = more.pop("digits", DIGITS)
+    found = {"x": rounded(x, count), "y": rounded(y, count), "c": colour}
     if panel:
         found["p"] = panel
     if name is not None:

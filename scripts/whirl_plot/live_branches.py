@@ -10,7 +10,7 @@ from .units import with_bar
 
 SHAPES = {"o": "circle", "s": "rect", "D": "rectRot", "^": "triangle", "P": "cross", "x": "crossRot"}
 PIECES = 4  # of the sixteen parts of a stretch of a curve one is one of these
-KEPT, TIMES = 40, 96  # orbits of a branch, times of an orbit
+KEPT, TIMES = 24, 96  # orbits of a branch, times of an orbit
 SCALE = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [190, 210, 40]])  # over a parameter
 
 
@@ -27,7 +27,7 @@ def curve(branch, values, name, option, colour, scale, panel=0, more=()):
     changes = branch.changes if at is branch.curve else {i - int(branch.born): c for i, c in branch.changes.items()}
     found = []
     for x, y, solid in at.stretches(values, stable, [p for _, _, p in branch.places_on(at)], changes):
-        found.append(line(x[::PIECES], y[::PIECES], name, panel, option, colour, quiet=True, d=None if solid else 1, w=1.8 if solid else 1.4))
+        found.append(line(x[::PIECES], y[::PIECES], name, panel, option, colour, quiet=True, d=None if solid else 1, w=1.8 if solid else 1.4, digits=5))
     whole = len(values) == len(branch.parameter)
     points = np.clip(np.arange(len(values)) - (int(branch.born) if whole else 0), 0, branch.points - 1)
     words = "01"  # styles of the points
@@ -71,7 +71,7 @@ def orbit_lines(branch, shown, scale, unit, name, panel=1, walls=True):
         for o, stable in zip(orbits, stability(study, orbits)):
             x, y = closed(o.x[:, b] * scale), closed(o.y[:, b] * scale)
             words = f"{name}: orbit at {over} {o.parameter:.5g} {of}".rstrip() + (", unstable" if stable is False else "")
-            found.append(line(x, y, name, panel, option, study.colour, f=o.point, t0=words, d=1 if stable is False else None))
+            found.append(line(x, y, name, panel, option, study.colour, f=o.point, t0=words, d=1 if stable is False else None, digits=5))
     return found
 
 
@@ -83,7 +83,7 @@ def closed(values):
 
 def walls_of(study, b, option, scale, panel):
     """The wall of the bore and the pads; switched off where an orbit should fill the panel."""
-    return [line(x * scale, y * scale, "clearance", panel, option, colour, quiet=True, w=width, d=dash, off=True) for x, y, colour, width, dash in outline(study, b)]
+    return [line(x[::4] * scale, y[::4] * scale, "clearance", panel, option, colour, quiet=True, w=width, d=dash, off=True, digits=4) for x, y, colour, width, dash in outline(study, b)]
 
 
 def orbit_panel(unit):
@@ -195,6 +195,8 @@ def together(results, _):
 
 
 def orbits(study, _):
+    if not study.orbits:
+        return None
     every, along = picked(study)
     scale, unit = study.micro
     colours = colours_along(len(every) if along is None else along)

@@ -7,6 +7,8 @@ import re
 import sys
 import time
 
+from whirl.answer import in_print
+
 from . import __main__ as plot
 from . import brief, live, style, sweep_tables, tables
 from .campbell import EITHER
@@ -20,14 +22,15 @@ body{font:15px/1.5 system-ui,'DejaVu Sans',sans-serif;color:var(--ink);max-width
 h1{font-size:1.75em;margin:.2em 0 0} h2{font-size:1.35em;margin:2.2em 0 .3em;border-bottom:2px solid var(--line);padding-bottom:.2em}
 h3{font-size:1.05em;margin:1.4em 0 .2em} .note{color:var(--grey);font-size:.88em;margin:.2em 0 1em;max-width:75em}
 nav{margin:1em 0;padding:.6em .9em;background:#f3f6f9;border-radius:6px} nav a{display:inline-block;margin-right:1.1em} a{color:var(--blue)}
-table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-align:left;font-weight:600;padding:.4em 0;font-size:1.05em;white-space:nowrap}
+table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-align:left;font-weight:600;padding:.4em 0;font-size:1.05em} caption span{display:inline-block;white-space:nowrap}
+td.short{white-space:nowrap} td.long{min-width:14em}
 th,td{padding:.25em 1.1em .25em 0;text-align:left;border-bottom:1px solid var(--line);vertical-align:top} th{color:var(--grey);font-weight:600}
 td.name{white-space:nowrap} td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
 img{max-width:100%;border:1px solid var(--line);border-radius:4px} details{margin:.7em 0} summary{cursor:pointer;color:var(--blue)}
 body{counter-reset:figures tables} figcaption::before{counter-increment:figures;content:"Figure " counter(figures) ". ";font-weight:600}
-caption:not(:empty)::before{counter-increment:tables;content:"Table " counter(tables) ". "}
+caption span::before{counter-increment:tables;content:"Table " counter(tables) ". "}
 @media print{nav{display:none} body{max-width:none;padding:0;font-size:10pt} figure,table,tr{break-inside:avoid} h2{break-after:avoid} .scroll{overflow:visible}}
-@media (max-width:700px){body{padding:.8em;overflow-wrap:break-word} caption{white-space:normal;min-width:16em} td.name{white-space:normal} th,td{padding-right:.8em}}
+@media screen and (max-width:700px){body{padding:.8em;overflow-wrap:break-word} caption span{white-space:normal;max-width:calc(100vw - 2.5em)} img{min-width:600px} td.name{white-space:normal} th,td{padding-right:.8em}}
 .bad{color:var(--bad);font-weight:600} .warn{color:var(--bad);margin:.2em 0;padding-left:1.2em} .scroll{overflow-x:auto} pre{background:#f3f6f9;padding:.8em;overflow-x:auto;font-size:.85em}
 """
 
@@ -95,11 +98,13 @@ def marked(cell, verdict=False):
 
 def show(table, folded=False):
     right = [all(numeric(row[k]) for row in table.rows) for k in range(len(table.head))]
-    mark = [" class=n" if r else "" for r in right]
+    # Short texts stay on one line, long ones keep a width in which they can be read.
+    length = [max((len(str(row[k])) for row in table.rows), default=0) for k in range(len(table.head))]
+    mark = [" class=n" if r else " class=short" if n <= 20 else " class=long" if n > 30 else "" for r, n in zip(right, length)]
     head = "".join(f"<th{m}>{escape(h)}</th>" for m, h in zip(mark, table.head))
     body = "".join("<tr>" + "".join(f"<td{m}>{marked(c, 'verdict' in (h, row[0]))}</td>" for m, h, c in zip(mark, table.head, row)) + "</tr>" for row in table.rows)
     note = f"<p class=note>{escape(table.note)}</p>" if table.note else ""
-    caption = "" if folded else f"<caption>{escape(table.caption)}</caption>"
+    caption = "" if folded or not table.caption else f"<caption><span>{escape(table.caption)}</span></caption>"
     whole = f"<div class=scroll><table>{caption}<tr>{head}</tr>{body}</table></div>{note}"
     return f"<details><summary>{escape(table.caption)} ({len(table.rows)})</summary>{whole}</details>" if folded else whole
 
@@ -126,7 +131,7 @@ def picture(path, subject=None):
     what = path.stem.rsplit(".", 1)[-1]
     chart = live.chart_of(subject, what) if subject is not None else ""
     data = base64.b64encode(path.read_bytes()).decode("ascii")
-    return f"<figure>{chart}<img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption title='{escape(path.name)}'>{escape(caption(what, subject))}</figcaption></figure>"
+    return f"<figure>{chart}<div class=scroll><img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'></div><figcaption title='{escape(path.name)}'>{escape(caption(what, subject))}</figcaption></figure>"
 
 
 UNITS = (("_rad_s", "rad/s"), ("_rpm", "rpm"), ("_rad", "rad"), ("_s", "s"))  # at the ends of names
@@ -140,17 +145,23 @@ def detail(name, value, bar):
 
 
 def details(event):
-    """All that summary.json says of a bifurcation beside its type and place."""
-    usual = ("type", "parameter", "value", "unit", "uncertainty")
-    return ", ".join(detail(k, v, event.get(f"uncertainty_{k}")) for k, v in event.items()
-                     if k not in usual and v is not None and not (k.startswith("uncertainty_") and k.removeprefix("uncertainty_") in event))
+    """All that summary.json says of a bifurcation beside its type and place: its sentence first, the parts of its bar last."""
+    parts = {k: v for k, v in event.items() if k in ("uncertainty_film_mesh", "uncertainty_time_mesh", "uncertainty_location")}
+    bars = {k: event.get(f"uncertainty_{k}", event.get(f"{k}_uncertainty")) for k in event}
+    bars["criticality_coefficient"] = event.get("criticality_uncertainty")
+    usual = {"type", "parameter", "value", "unit", "uncertainty", "sentence", "criticality_uncertainty", *parts}
+    usual |= {name for k in event for name in (f"uncertainty_{k}", f"{k}_uncertainty")}
+    said = [event["sentence"]] if isinstance(event.get("sentence"), str) else []
+    said += [detail(k, v, bars.get(k)) for k, v in event.items() if k not in usual and v is not None]
+    shares = ", ".join(f"{k.removeprefix('uncertainty_').replace('_', ' ')} {digits(v, 2)}" for k, v in parts.items() if v)
+    return "; ".join(said + ([f"parts of the bar: {shares} {event.get('unit', '')}".strip()] if shares else []))
 
 
 def all_values(study):
     """Everything of summary.json that the tables above may have left out."""
     rows = [[k, reading(v.value, v.uncertainty, v.unit)] for k, v in study.values.items()]
     out = [tables.Table("All values", ["name", "value"], rows, "in units that read well; summary.json has all digits in the units of the program")]
-    more = [[b.get("type"), f"{with_bar(b.get('value'), b.get('uncertainty'))} {b.get('unit', '')}".strip(), details(b)] for b in study.bifurcations]
+    more = [[style.MARKS.get(b.get("type"), ("", "", b.get("type")))[2], f"{with_bar(b.get('value'), b.get('uncertainty'))} {b.get('unit', '')}".strip(), in_print(details(b))] for b in study.bifurcations]
     out.append(tables.Table("All about the bifurcations", ["type", "value", "more"], more))
     hertz = lambda v: v / (2 * math.pi) if isinstance(v, (int, float)) else None  # noqa: E731
     modes = [[f"{digits(m.get('speed'), 6)} {m.get('speed_unit', '')}".strip(), digits(m.get("mode"), 4), with_bar(hertz(m.get("imag")), hertz(m.get("imag_uncertainty"))),
@@ -165,7 +176,7 @@ def all_values(study):
 
 def warned(warnings):
     """The warnings of a study or of the machine, which its numbers must not be read without."""
-    return f"<ul class=warn>{''.join(f'<li>{escape(w)}</li>' for w in warnings)}</ul>" if warnings else ""
+    return f"<ul class=warn>{''.join(f'<li>{escape(in_print(w))}</li>' for w in warnings)}</ul>" if warnings else ""
 
 
 def counted(number, what, several=""):

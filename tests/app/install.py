@@ -74,5 +74,7 @@ print(round(run.values("response")["unbalance.disc.mass"].value, 2))
     done = run("/usr/bin/python3", "-c", example)
     check("its modules and version", done.stdout.split()[-1:] == [version] and "/pip/" in done.stdout, done.stdout + done.stderr)
     check("its commands", (work / "pip/bin/whirl-report").is_file())
+    for folder in (work / "pip", prefix / "lib/python3/dist-packages"):
+        check(f"the scripts of charts in {folder.name}", all((folder / "whirl_plot" / f).is_file() for f in ("live_base.js", "live_shapes.js", "live.js")))
 
 sys.exit(1 if failures else 0)

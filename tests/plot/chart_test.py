@@ -139,7 +139,7 @@ def page(folder):
         values(folder, charts)
         assert text.count("<script>/*! a library */</script>") == 1 and "class WhirlShapes" in text and "charts-note" in text
         assert not re.search(r"(src|href)=(?!['\"]?(data:|#))", re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)), "the page needs another file"
-        assert "@media print" in live.STYLE and ".charted>img{display:none}" in live.STYLE
+        assert "@media print" in live.STYLE and ".charted img{display:none}" in live.STYLE
     with with_library(None):
         done = command.call("report", folder)
         bare = (folder / "report.html").read_text()

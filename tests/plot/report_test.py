@@ -158,7 +158,7 @@ def warnings(folder):
             style.save(figure, study, "response")
         finally:
             style.write = kept
-    assert text.count(sentence) == 2 and "second &lt;b&gt;" in text, text.count(sentence)
+    assert text.count(sentence.replace("um", "\u00b5m")) == 2 and "second &lt;b&gt;" in text, text.count(sentence)
     assert lines == [f"Warning: {sentence}", "Warning: second <b>"], lines
     assert any(sentence in t.replace("\n", " ") for t in written), written
     assert style.warning_lines(["a"] * 5, 80)[-1] == "and 2 more warnings in the report"
