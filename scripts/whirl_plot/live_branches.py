@@ -4,14 +4,14 @@ import numpy as np
 from .bifurcation import Followed, damped, distinct, without_twins
 from .bore import outline
 from .live import line, rounded, service_place
-from .orbits import picked, stability
+from .orbits import picked, shades_of, stability
 from .style import BAD, GREY, INK, MARKS, X, Y
 from .units import with_bar
 
 SHAPES = {"o": "circle", "s": "rect", "D": "rectRot", "^": "triangle", "P": "cross", "x": "crossRot"}
 PIECES = 4  # of the sixteen parts of a stretch of a curve one is one of these
 KEPT, TIMES = 24, 96  # orbits of a branch, times of an orbit
-SCALE = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [190, 210, 40]])  # over a parameter
+SCALE = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]])  # viridis
 
 
 def axis_of(study):
@@ -197,9 +197,9 @@ def together(results, _):
 def orbits(study, _):
     if not study.orbits:
         return None
-    every, along = picked(study)
+    every = picked(study)
     scale, unit = study.micro
-    colours = colours_along(len(every) if along is None else along)
+    colours = colours_at(shades_of(every)[0])
     over, of = axis_of(study)
     lines = []
     for option in range(len(every[0].places)):
@@ -210,8 +210,7 @@ def orbits(study, _):
     return chart(study, lines, [{**orbit_panel(unit), "follows": False, "title": f"Orbits over {over}"}], list(every[0].places))
 
 
-def colours_along(places):
-    """Colours over numbers from 0 to 1, or over so many in a row."""
-    places = np.linspace(0, 1, places) if np.isscalar(places) else np.asarray(places)
+def colours_at(shades):
+    """Colours of viridis at numbers from 0 to 1."""
     knots = np.linspace(0, 1, len(SCALE))
-    return ["#" + "".join(f"{int(round(np.interp(p, knots, SCALE[:, c]))):02x}" for c in range(3)) for p in places]
+    return ["#" + "".join(f"{int(round(np.interp(s, knots, SCALE[:, c]))):02x}" for c in range(3)) for s in shades]

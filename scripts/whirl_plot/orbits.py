@@ -56,28 +56,34 @@ def along_branch(study, orbits):
 
 
 def picked(study, shown=9):
-    """Some orbits, evenly along the branch and not over the parameter, because beyond a fold the same speeds come again; and the place of each between
-    the smallest parameter (0) and the largest (1), None if the branch turns."""
+    """Some orbits, evenly along the branch and not over the parameter, because beyond a fold the same speeds come again."""
     orbits = study.orbits
     along = along_branch(study, orbits)
-    orbits = [orbits[k] for k in np.unique([int(np.argmin(np.abs(along - s))) for s in np.linspace(along[0], along[-1], shown)])]
+    return [orbits[k] for k in np.unique([int(np.argmin(np.abs(along - s))) for s in np.linspace(along[0], along[-1], shown)])]
+
+
+def shades_of(orbits):
+    """A number from 0 to 0.9 for the colour of each orbit, and what it means: the parameter, or the way along a branch that turns, where a
+    parameter comes again."""
     values = np.array([o.parameter for o in orbits], float)
     steps = np.diff(values)
-    turns = len(values) < 2 or not (np.all(steps > 0) or np.all(steps < 0))
-    return orbits, None if turns else (values - values.min()) / np.ptp(values)
+    if len(values) > 1 and (np.all(steps > 0) or np.all(steps < 0)):
+        return 0.9 * (values - values.min()) / np.ptp(values), True
+    return np.linspace(0, 0.9, len(orbits)), False
 
 
 def draw(study, shown=9):
     if not study.orbits:
         return []
     scale, unit = study.micro
-    orbits, place = picked(study, shown)
+    orbits = picked(study, shown)
     stable, names = stability(study, orbits), orbits[0].places
     smooth = [(periodic(o.x * scale), periodic(o.y * scale)) for o in orbits]
     known = study.has("bearings/clearance") or study.has("bearings/outline_x")
     rows = 2 if known else 1
     figure, axes = row_of_panels(rows, len(names))
-    colours = plt.cm.viridis(np.linspace(0, 0.9, len(orbits)) if place is None else 0.9 * place)
+    shades, by_parameter = shades_of(orbits)
+    colours = plt.cm.viridis(shades)
     for b, name in enumerate(names):
         every = [np.concatenate([s[d][:, b] for s in smooth]) for d in (0, 1)]
         if known:
@@ -97,7 +103,7 @@ def draw(study, shown=9):
                       label=f"{o.parameter:.5g}{given}" + (", unstable" if s is False else "")) for o, c, s in zip(orbits, colours, stable)]
     first = "above in the clearance, pads thick, no wall where dotted; below enlarged; " if known else ""
     moment = "shaft angle 0" if study.attribute("unbalance", "") else "the phase chosen as zero"
-    meaning = words if place is not None else "way along the branch, which turns"
+    meaning = words if by_parameter else "way along the branch, which turns"
     note = f"{first}colours: {meaning}; dashed: unstable; dot: {moment}; {study.shown}"
     return save(figure, study, "orbits", f"{note}; {ROTATION}" if known and len(names) > 2 else note, handles, 5)
 

@@ -681,10 +681,10 @@ def legends():
 def turning_branches():
     """Colours are the parameter where it rises or falls, else the way along the branch; none is yellow."""
     orbit = lambda p: types.SimpleNamespace(parameter=p)  # noqa: E731
-    colours, by_parameter = orbits.colours_of([orbit(p) for p in (1.0, 2.0, 9.0)])
-    assert by_parameter and np.allclose(colours[1], plt.cm.viridis(0.9 / 8)), "a ninth of the way"
-    colours, by_parameter = orbits.colours_of([orbit(p) for p in (1.0, 9.0, 2.0)])
-    assert not by_parameter and np.allclose(colours[1], plt.cm.viridis(0.45)) and max(colours[:, 0]) < 0.8
+    shades, by_parameter = orbits.shades_of([orbit(p) for p in (1.0, 2.0, 9.0)])
+    assert by_parameter and np.isclose(shades[1], 0.9 / 8), "an eighth of the way"
+    shades, by_parameter = orbits.shades_of([orbit(p) for p in (1.0, 9.0, 2.0)])
+    assert not by_parameter and np.isclose(shades[1], 0.45) and max(plt.cm.viridis(shades)[:, 0]) < 0.8
 
 
 def sharp_points():
