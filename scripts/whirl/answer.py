@@ -6,17 +6,22 @@ import typing
 import numpy as np
 
 
-UNITS = {"um": "\u00b5m", "degC": "\u00b0C"}  # of the screen, as people print them
+PRINTED = {"u": "\u00b5", "degC": "\u00b0C"}  # of units on the screen
+
+
+def units(text):
+    """Units behind numbers as people print them: `\u00b5m`, `\u00b5rad`, `\u00b0C`."""
+    return re.sub(r"(?<=\d )(u(?=m\b|rad\b)|degC\b)", lambda m: PRINTED[m[1]], text)
 
 
 def plain(text):
     """The text of a number as people write it: `5021.4 \u00b1 6.9`, a minus that is as long as a plus."""
-    return text.replace(" +- ", " \u00b1 ").replace("-", "\u2212") if text[:1] in "-(0123456789" else text
+    return units(text).replace(" +- ", " \u00b1 ").replace("-", "\u2212") if text[:1] in "-(0123456789" else text
 
 
 def in_print(text):
     """Words with numbers among them: `23.20 \u00b1 0.40 \u00b5m at node 4`."""
-    return re.sub(r"(?<=\d )(um|degC)\b", lambda m: UNITS[m[1]], text.replace(" +- ", " \u00b1 "))
+    return units(text.replace(" +- ", " \u00b1 "))
 
 
 class Cell(typing.NamedTuple):
@@ -75,7 +80,7 @@ def _cell(cell, unit):
 def answer(summary):
     """The answer in the entry of a study in summary.json; empty if it has none."""
     brief = summary.get("brief", {})
-    tables = [AnswerTable(t["caption"], [c["name"] for c in t["columns"]], [UNITS.get(c["shown"], c["shown"].replace("um", "\u00b5m")) for c in t["columns"]],
+    tables = [AnswerTable(t["caption"], [c["name"] for c in t["columns"]], [units(f"1 {c['shown']}")[2:] for c in t["columns"]],
                           [c["unit"] for c in t["columns"]],
                           [[_cell(cell, c["unit"]) for cell, c in zip(row, t["columns"])] for row in t["rows"]], in_print(t.get("note", "")))
               for t in brief.get("tables", [])]

@@ -2,7 +2,7 @@
 // Each <div class=live> holds its data as JSON, as live.py describes them. Without this script the page shows its pictures.
 'use strict';
 (() => {
-  const {DASHES, GLYPHS, GREY, LIGHT, axis, ground, make, number, valued, wrapped} = Live;
+  const {DASHES, GLYPHS, GREY, LIGHT, axis, ground, make, number, tick, valued, wrapped} = Live;
 
   class Figure {
     constructor(place, data) {
@@ -82,7 +82,9 @@
       const found = {
         line, label: line.n || '', data: line.x.map((x, i) => ({x, y: line.y[i]})), borderColor: line.c, backgroundColor: line.c,
         borderWidth: line.w || 1.6, borderDash: DASHES[line.d || 0], showLine: !line.m, pointStyle: line.m || 'circle', pointRadius: line.m ? 6 : line.x.length === 1 ? 3 : 0,
-        pointHoverRadius: line.quiet ? 0 : line.m ? 8 : 4, pointHitRadius: 0, pointBorderColor: !line.m || line.m.startsWith('cross') ? line.c : '#fff', pointBorderWidth: line.m ? 1.5 : 1, spanGaps: false, tension: 0,
+        pointHoverRadius: line.quiet ? 0 : line.m ? 8 : 4, pointHitRadius: 0, pointBorderColor: !line.m || line.m.startsWith('cross') ? line.c : '#fff', pointBorderWidth: line.m ? 1.5 : 1, spanGaps: false,
+        // Without a tension Chart.js joins points of one column of pixels, which is right for curves over x only.
+        tension: this.data.panels[line.p || 0].by === 'x' ? 0 : 1e-6,
         order: line.m ? 0 : line.quiet ? 2 : 1,
       };
       if (line.hollow) Object.assign(found, {pointBackgroundColor: 'transparent', pointBorderColor: line.c});
@@ -118,7 +120,7 @@
       const line = item.dataset.line, {x, y} = chart.whirl.panel, i = item.dataIndex, name = line.n ? line.n + ': ' : '';
       if (line.t) return line.t[i];
       const style = line.s && this.data.styles[parseInt(line.s[Math.min(i, line.s.length - 1)], 36)];
-      return `${name}${valued(line.y[i], y[1])}${chart.whirl.panel.equal ? `, ${x[0]} ${valued(line.x[i], x[1])}` : ''}`
+      return `${name}${valued(line.y[i], line.u == null ? y[1] : line.u)}${chart.whirl.panel.equal ? `, ${x[0]} ${valued(line.x[i], x[1])}` : ''}`
         + (line.more || []).map(([what, unit, v]) => `, ${what} ${valued(v[i], unit)}`).join('') + (style && style.t ? `, ${style.t}` : '');
     }
 
@@ -136,9 +138,9 @@
           interaction: {mode: 'value', axis: panel.by || 'xy', intersect: false},
           onHover: (event, items, c) => this.pointed(c, items),
           scales: {
-            x: {type: 'linear', title: title(axis(panel.x)), grid: {color: LIGHT}, ticks: {maxRotation: 0, includeBounds: false, font: {size: 11}, callback: number}},
+            x: {type: panel.logx ? 'logarithmic' : 'linear', title: title(axis(panel.x)), grid: {color: LIGHT}, ticks: {maxRotation: 0, includeBounds: false, font: {size: 11}, callback: tick(panel.logx)}},
             y: {type: panel.log ? 'logarithmic' : 'linear', reverse: !!panel.reverse, title: title(axis(panel.y)), grid: {color: LIGHT}, grace: panel.log || panel.equal ? 0 : '4%',
-                ticks: {font: {size: 11}, includeBounds: false, callback: number, ...(panel.step ? {stepSize: panel.step} : {})}, afterFit: s => { s.width = Math.max(s.width, s.chart.width < 500 ? 62 : 76); }},
+                ticks: {font: {size: 11}, includeBounds: false, callback: tick(panel.log), ...(panel.step ? {stepSize: panel.step} : {})}, afterFit: s => { s.width = Math.max(s.width, s.chart.width < 500 ? 62 : 76); }},
           },
           plugins: {
             legend: {display: false},
@@ -209,7 +211,9 @@
     zoomed(chart, x, y) {
       this.charts.forEach(c => {
         if (c !== chart && (chart.whirl.panel.equal || c.whirl.panel.equal)) return;
-        c.whirl.zoom = {x, y: c === chart ? y : (c.whirl.zoom || {}).y};
+        // A logarithmic axis has no zero.
+        const above = (v, s) => v && s.type === 'logarithmic' && v[0] <= 0 ? [s.min, v[1]] : v;
+        c.whirl.zoom = {x: above(x, c.scales.x), y: c === chart ? above(y, c.scales.y) : (c.whirl.zoom || {}).y};
         this.fit(c);
         c.update('none');
       });

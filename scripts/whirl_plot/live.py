@@ -25,7 +25,7 @@ DIGITS = 6
 # The picture that a chart stands for, by the end of its name -> function of a module that makes the chart of a study.
 CHARTS = {
     "campbell": "live_modes.campbell", "shapes-3d": "live_modes.shapes", "response": "live_response.shaft", "response-bearings": "live_response.journals",
-    "history": "live_response.history", "run-up": "live_response.run_up", "equilibria": "live_branches.equilibria", "cycles-vertical": "live_branches.vertical",
+    "history": "live_motion.history", "motion": "live_motion.motion", "transfer": "live_response.transfer", "run-up": "live_response.run_up", "equilibria": "live_branches.equilibria", "cycles-vertical": "live_branches.vertical",
     "cycles-horizontal": "live_branches.horizontal", "nodes": "live_branches.nodes", "bifurcations": "live_branches.together", "orbits": "live_branches.orbits",
 }
 
@@ -108,7 +108,7 @@ def library():
 
 def chart_of(study, what):
     """The chart in place of a picture as HTML; empty if there is none, or the library is not installed."""
-    kind = what if what in CHARTS else re.sub(r"-?\d+$", "", what)
+    kind = "transfer" if getattr(study, "kind", "") == "frequency_response" else what if what in CHARTS else re.sub(r"-?\d+$", "", what)
     if kind not in CHARTS or getattr(study, "kind", "") == "sweep" or library() is None:
         return ""
     module, name = CHARTS[kind].split(".")

@@ -12,6 +12,13 @@ const Live = (() => {
   };
   const number = v => v == null || !isFinite(v) ? '–' : v === 0 ? '0' : String(Math.abs(v) < 1e-4 || Math.abs(v) >= 1e7
     ? v.toExponential(3) : +v.toPrecision(5)).replace(/-/g, '−');
+  const raised = n => String(n).replace(/./g, c => '⁰¹²³⁴⁵⁶⁷⁸⁹'['0123456789'.indexOf(c)] || '⁻');
+  // Numbers of an axis; of a logarithmic one 1, 2 and 5 of each decade, or powers of ten where it has many.
+  const tick = log => !log ? number : function (v) {
+    const power = Math.floor(Math.log10(v) + 1e-9), first = Math.round(v / 10 ** power), wide = Math.log10(this.max / this.min) > 2.5;
+    if (!(wide ? [1] : [1, 2, 5]).includes(first)) return null;
+    return power >= -2 && power < 6 ? number(v) : `${first === 1 ? '' : first + '·'}10${raised(power)}`;
+  };
   const axis = ([name, unit]) => unit ? `${name} [${unit}]` : name;
   const valued = (v, unit) => unit ? `${number(v)} ${unit}` : number(v);
 
@@ -35,6 +42,7 @@ const Live = (() => {
   };
 
   Chart.defaults.animation = false;
+  Chart.defaults.elements.line.capBezierPoints = false;
   Chart.defaults.font.family = "system-ui, 'DejaVu Sans', sans-serif";
   Chart.defaults.color = INK;
 
@@ -101,5 +109,5 @@ const Live = (() => {
     return lines;
   };
 
-  return {DASHES, GLYPHS, GREY, LIGHT, axis, ground, make, number, valued, wrapped};
+  return {DASHES, GLYPHS, GREY, LIGHT, axis, ground, make, number, tick, valued, wrapped};
 })();

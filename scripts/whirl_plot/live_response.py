@@ -1,13 +1,13 @@
-"""Charts of responses: amplitude and lag over speed (Bode), run-ups, motions over time."""
+"""Charts of responses: amplitude and lag over speed (Bode), run-ups, transfer functions."""
 import re
 
 import numpy as np
 
-from . import motion, run_up as ups
+from . import run_up as ups, transfer as transfers
 from .live import Styles, line, rounded, service_place
 from .margins import operating_in
 from .response import Validity, is_answer, number, peaks_at
-from .style import GREY, INK, X, Y, length_unit, runs, speed_axis
+from .style import COLOURS, GREY, INK, X, Y, length_unit, runs, speed_axis
 from .units import digits, person, with_bar
 
 KEYS = ("x_amplitude", "x_phase", "y_amplitude", "y_phase", "semi_major")
@@ -98,17 +98,37 @@ def run_up(results, _):
             "panels": [{"x": ("speed", unit), "y": ("amplitude, 0-peak", length), "low": 0, "places": service_place(studies[0], unit)}]}
 
 
-def history(study, _):
-    scale, unit = study.micro
-    samples = int(round(study.attribute("samples", 0)))
-    x, y = (study.get(f"orbit/{d}")[-motion.LATEST * samples:] * scale for d in "xy")
-    names, turns = study.bearings(x.shape[1]), np.arange(1 - len(x), 1) / samples
-    rows, step = motion.distinct(study, names), -(-len(x) // LONGEST)
-    lines = []
-    for option, b in enumerate(rows):
-        for name, values, colour in (("y", y, Y), ("x", x, X)):
-            lines.append(line(turns[::step], values[::step, b], name, 0, option, colour))
-            if not study.has("section/x"):
-                lines.append(line(turns[::-samples], values[::-samples, b], "once per revolution", 0, option, INK, quiet=True, dots=True))
-    over = "periods before the end" if study.has("places/name") else "revolutions before the end"
-    return {"choose": {"name": "at", "of": [names[b] for b in rows]}, "lines": lines, "panels": [{"x": (over, ""), "y": ("position", "" if unit == "1" else unit), "by": "x", "span": rounded(turns[[0, -1]])}]}
+def transfer(study, what):
+    """Amplitude and phase of one output over the frequency, a colour for each input."""
+    response = study.group["response"]
+    ways, output = list(transfers.ways_of(response)), what.removeprefix("response-")
+    pairs = [p for p in response["machine"] if study_name(p.split(".from.")[0]) == study_name(output)]
+    unit = study.attribute("frequency_unit", "rad/s")
+    frequency = response["frequency"][()] * speed_axis(unit)[0]
+    step, unstable, lines, units = -(-len(frequency) // LONGEST), study.summary.get("stability") == "unstable", [], []
+    for colour, pair in zip(COLOURS * len(pairs), pairs):
+        for k, (way, words) in enumerate(ways):
+            table = response[way][pair]
+            amplitude, of = table["amplitude"][()], str(table["amplitude"].attrs.get("unit", ""))
+            if not np.any(amplitude):
+                continue
+            name = f"from {re.sub('[._]', ' ', pair.split('.from.')[1])}" + (f", {words}" if len(ways) > 1 else "")
+            look = {"d": 1 if k == 0 and unstable else min(k, 3) or None, "u": of}
+            units.append(of)
+            lines.append(line(frequency[::step], np.where(amplitude > 0, amplitude, np.nan)[::step], name, 0, colour=colour, **look))
+            degrees = np.rad2deg(table["phase"][()])
+            # A break where the phase passes 180 degrees, behind the point before.
+            lines.append(line(frequency[::step], degrees[::step], name, 1, colour=colour, **{**look, "u": "deg"},
+                              s="".join("01"[int(j)] for j in np.append(np.abs(np.diff(degrees[::step])) > 180, False))))
+    if not lines:
+        return None
+    log = len(frequency) > 2 and frequency[0] > 0 and np.allclose(np.diff(np.log(frequency)), np.log(frequency[1] / frequency[0]), rtol=1e-6)
+    shared = {"x": ("frequency", unit), "by": "x", "logx": bool(log), "span": rounded(frequency[[0, -1]])}
+    return {"lines": lines, "styles": [{}, {"c": "transparent"}], "panels": [
+        {**shared, "y": ("amplitude", ", ".join(dict.fromkeys(units))), "log": True},
+        {**shared, "y": ("phase", "deg"), "limits": [-180, 180], "step": 90, "height": 220}]}
+
+
+def study_name(text):
+    """As in names of files."""
+    return re.sub(r"[^A-Za-z0-9]+", "_", text)

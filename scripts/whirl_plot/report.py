@@ -100,7 +100,7 @@ def show(table, folded=False):
     right = [all(numeric(row[k]) for row in table.rows) for k in range(len(table.head))]
     # Short texts stay on one line, long ones keep a width in which they can be read.
     length = [max((len(str(row[k])) for row in table.rows), default=0) for k in range(len(table.head))]
-    mark = [" class=n" if r else " class=short" if n <= 20 else " class=long" if n > 30 else "" for r, n in zip(right, length)]
+    mark = [" class=n" if r else " class=short" if n <= 26 else " class=long" if n > 30 else "" for r, n in zip(right, length)]
     head = "".join(f"<th{m}>{escape(h)}</th>" for m, h in zip(mark, table.head))
     body = "".join("<tr>" + "".join(f"<td{m}>{marked(c, 'verdict' in (h, row[0]))}</td>" for m, h, c in zip(mark, table.head, row)) + "</tr>" for row in table.rows)
     note = f"<p class=note>{escape(table.note)}</p>" if table.note else ""
@@ -122,13 +122,13 @@ def caption(what, subject=None):
         return f"{words.removesuffix('.')}, at {number} {subject.attribute('speed_unit', 'rad/s')}." if at and subject is not None else words
     for head, told in BY_PLACE.items():
         if what.startswith(head):
-            return told.format(what.removeprefix(head).replace("-", " "))
+            return told.format(re.sub("[-._]", " ", what.removeprefix(head)))
     return f"{kind.replace('-', ' ').capitalize()}."
 
 
 def picture(path, subject=None):
     """A picture; of a study, or of the run, with the chart that takes its place on a screen, where there is one."""
-    what = path.stem.rsplit(".", 1)[-1]
+    what = path.stem.removeprefix(subject.file("").name) if hasattr(subject, "kind") else path.stem
     chart = live.chart_of(subject, what) if subject is not None else ""
     data = base64.b64encode(path.read_bytes()).decode("ascii")
     return f"<figure>{chart}<div class=scroll><img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'></div><figcaption title='{escape(path.name)}'>{escape(caption(what, subject))}</figcaption></figure>"

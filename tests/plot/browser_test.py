@@ -164,7 +164,7 @@ with tempfile.TemporaryDirectory() as name, browser.Browser() as page:
             branch(page, root["studies/pair, G6.3"])
             shapes(page, False)
             charts, images = everything(page, width)
-            assert charts == 13, charts
+            assert charts == 14, charts
             assert not page.errors, page.errors
     page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
     page.open(report, 1400)

@@ -14,12 +14,12 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import command  # noqa: E402
 import synthetic  # noqa: E402
-from whirl_plot import live, live_response, style  # noqa: E402
+from whirl_plot import live, live_motion, style  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 RPM = 30 / np.pi
 CHARTS = {"modes.campbell", "modes.shapes-3d", "generator_pair.response", "generator_pair.response-bearings", "balanced.equilibria", "pair_G2.5.cycles-vertical",
-          "pair_G2.5.cycles-horizontal", "pair_G2.5.orbits", "pair_G6.3.cycles-vertical", "pair_G6.3.cycles-horizontal", "pair_G6.3.orbits", "period_two.history", "bifurcations"}
+          "pair_G2.5.cycles-horizontal", "pair_G2.5.orbits", "pair_G6.3.cycles-vertical", "pair_G6.3.cycles-horizontal", "pair_G6.3.orbits", "period_two.history", "period_two.motion", "bifurcations", "disc.response-node.7.x"}
 
 
 @contextlib.contextmanager
@@ -67,6 +67,17 @@ def charts_of(page):
     return found
 
 
+def oscillator(root):
+    """A transfer function whose phase passes 180 degrees, over a logarithmic frequency."""
+    group = synthetic.study(root, "disc", "frequency_response", frequency_unit="rad/s").create_group("response")
+    frequency = np.geomspace(10, 1000, 41)
+    group["frequency"] = frequency
+    table = group.create_group("machine/node.7.x.from.node.7.y")
+    synthetic.put(table, amplitude=1e-6 / np.abs(1e4 - frequency**2 + 10j * frequency), phase=np.mod(np.linspace(2, 4, 41) + np.pi, 2 * np.pi) - np.pi)
+    table["amplitude"].attrs["unit"] = "m/N"
+    group["machine"].attrs["frequency"] = np.nan
+
+
 def values(folder, charts):
     with Drawn(folder) as results:
         # Campbell: frequency and damping of each mode, red where it grows.
@@ -110,6 +121,15 @@ def values(folder, charts):
         chart, study = charts["period_two.history"], results["period two"]
         line, = named(chart, "x", 0, 0)
         assert line["x"][-1] == 0 and close(line["y"], study.get("orbit/x")[:, 0] * 1e6)
+        chart = charts["period_two.motion"]
+        assert close(named(chart, "orbit", 0, 0)[0]["y"], study.get("orbit/y")[:, 0] * 1e6, 1e-4) and len(named(chart, "once per revolution", 0, 0)[0]["x"]) == 20
+        assert close(named(chart, "x, horizontal", 1, 0)[0]["x"], study.get("spectrum/order")[:121], 1e-4) and chart["panels"][1]["log"] and len(chart["panels"]) == 3
+        # Transfer functions: the phase is broken where it passes 180 degrees.
+        chart = charts["disc.response-node.7.x"]
+        top, phase = (named(chart, "from node 7 y", k)[0] for k in (0, 1))
+        assert close(top["y"], results["disc"].get("response/machine/node.7.x.from.node.7.y/amplitude")) and top["u"] == "m/N" and chart["panels"][0]["logx"]
+        broken, = [k for k, s in enumerate(phase["s"]) if chart["styles"][int(s, 36)].get("c") == "transparent"]
+        assert phase["y"][broken] > 0 > phase["y"][broken + 1], broken
         chart, study = charts["modes.shapes-3d"], results["modes"]
         assert len(chart["modes"]) == 6 and chart["modes"][1]["t"].startswith("2: 12.589 Hz"), [m["t"] for m in chart["modes"]]
         x = np.array(chart["modes"][1]["x"][0]) + 1j * np.array(chart["modes"][1]["x"][1])
@@ -128,6 +148,7 @@ def page(folder):
         for name in ("pair, G2.5", "pair, G6.3"):
             root[f"studies/{name}/orbits"]["point"] = np.linspace(0, 139, 20).astype(int)
         root["studies/pair, G2.5"].attrs["unbalance"] = "</script><b>"
+        oscillator(root)
     with with_library("/*! a library */"):
         done = command.call("report", folder)
         assert done.returncode == 0 and not done.stderr, done.stderr
@@ -146,12 +167,12 @@ def page(folder):
     assert done.returncode == 0 and not done.stderr and "<script" not in bare and "class=live" not in bare, done.stderr
     assert bare.count("<img") == text.count("<img"), "pictures depend on the library"
     # A chart that fails costs itself only.
-    real, live_response.history = live_response.history, lambda *_: 1 / 0
+    real, live_motion.history = live_motion.history, lambda *_: 1 / 0
     try:
         with with_library("/*! a library */"):
             done = command.call("report", folder)
     finally:
-        live_response.history = real
+        live_motion.history = real
     assert done.returncode == 0 and "period two: the chart 'history' cannot be made" in done.stderr and set(charts_of((folder / "report.html").read_text())) == CHARTS - {"period_two.history"}, done.stderr
 
 
