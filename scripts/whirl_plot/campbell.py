@@ -24,6 +24,17 @@ def modes_of(study):
         yield int(mode), rows["speed"][pick], rows["frequency"][pick], rows["log_decrement"][pick], whirl
 
 
+def vibrates(study):
+    """Whether there is a frequency over several speeds: a machine that only creeps has no Campbell diagram."""
+    return study.has("spectrum/speed") and len(np.unique(study.get("spectrum/speed"))) > 1 and bool(np.any(study.get("spectrum/frequency") > 0))
+
+
+def range_of(decrements):
+    """What an axis of logarithmic decrements shows: most of them, and what grows."""
+    inside = decrements[np.isfinite(decrements)]
+    return (min(-0.1, inside.min() * 1.15), max(0.3, min(1.0, np.quantile(inside, 0.85)))) if len(inside) else (-0.1, 0.3)
+
+
 def with_either(words, whirls):
     """The words below a picture, with those for equal modes where one of these is shown."""
     return f"{words}; {EITHER}" if any("either" in whirl for whirl in whirls) else words
@@ -134,9 +145,7 @@ def free_place(axis, modes, ends, limit, times):
 
 def draw_damping(axis, modes, end, to_speed):
     """What the panel of the decrements shows beside its lines."""
-    decrements = np.concatenate([m[3] for m in modes])
-    inside = decrements[np.isfinite(decrements)]
-    low, high = min(-0.1, inside.min() * 1.15), max(0.3, min(1.0, np.quantile(inside, 0.85)))
+    low, high = range_of(np.concatenate([m[3] for m in modes]))
     axis.axhspan(low, 0, color=BAD, alpha=0.07, linewidth=0)
     axis.axhline(0, color=INK, linewidth=0.9)
     axis.set_ylim(low, high)
@@ -147,7 +156,7 @@ def draw_damping(axis, modes, end, to_speed):
 
 
 def draw(study):
-    if not study.has("spectrum/speed") or len(np.unique(study.get("spectrum/speed"))) < 2:
+    if not vibrates(study):
         return []
     to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
     modes = list(modes_of(study))

@@ -35,7 +35,7 @@ STYLE = """
 .key{font:inherit;border:1px solid var(--line);border-radius:4px;background:#fff;padding:.1em .5em;cursor:pointer;color:var(--ink)}
 .key[aria-pressed=false].toggle{color:var(--grey);text-decoration:line-through;background:#f3f6f9} .style{color:var(--grey)} .reset{border-color:var(--blue);color:var(--blue)}
 .swatch{display:inline-block;min-width:1.3em;vertical-align:middle;text-align:center;line-height:0}
-.panels.beside{display:grid;grid-template-columns:minmax(0,1.7fr) minmax(0,1fr);gap:.6em} .chart{position:relative;height:360px;min-width:0} .chart.square,.chart.shapes{height:400px}
+.panels.beside{display:grid;grid-template-columns:minmax(0,1.7fr) minmax(0,1fr);gap:.6em} .chart{position:relative;height:360px;min-width:0} .chart.square,.chart.shapes{height:400px} .chart.square{max-width:640px}
 .chart canvas{touch-action:pan-y;width:100%;height:100%} canvas:focus-visible{outline:2px solid var(--blue);outline-offset:2px} .live{border:1px solid var(--line);border-radius:4px;padding:.6em}
 .said{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)} .live,.charts-note{display:none} .has-charts .charts-note{display:block}
 .has-charts .charted>.live{display:block} .has-charts .charted img{display:none}

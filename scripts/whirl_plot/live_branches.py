@@ -100,6 +100,8 @@ def services(study):
 
 
 def equilibria(study, _):
+    if not study.has("branch/parameter", "branch/y"):
+        return None
     branch = Followed(study)
     x, y = branch.column("x"), branch.column("y")
     names, shown, growth = study.bearings(x.shape[1]), distinct(x, y), damped(study)
@@ -161,6 +163,8 @@ def horizontal(study, _):
 
 
 def nodes(study, _):
+    if not study.has("branch/parameter", "nodes/amplitude", "nodes/node"):
+        return None
     branch = Followed(study)
     every = np.atleast_1d(study.get("nodes/node"))
     tables = {k: study.get(f"nodes/{k}").reshape(branch.points, -1) for k in ("amplitude", "x", "y")}

@@ -1,7 +1,7 @@
 """Charts of modes: Campbell diagram, and shapes that move."""
 import numpy as np
 
-from .campbell import EITHER, LOW_DAMPING, OVERDAMPED, between, colour_of, crowded_out, modes_of, ranges_of, senses, stretches, with_borders
+from .campbell import EITHER, LOW_DAMPING, OVERDAMPED, between, colour_of, crowded_out, modes_of, range_of, ranges_of, senses, stretches, vibrates, with_borders
 from .live import Styles, line, rounded, service_place
 from .shapes import at_words, bearing_places, normalised, tables_of
 from .style import BAD, GOOD, GREY, INK, LIGHT, UNDAMPED, WARN, speed_axis
@@ -19,6 +19,8 @@ def looks(styles, sense, worst):
 
 
 def campbell(study, _):
+    if not vibrates(study):
+        return None
     unit = study.attribute("speed_unit", "rad/s")
     to_speed, _, to_frequency, hertz = speed_axis(unit)
     every, full, styles, lines = np.unique(study.get("spectrum/speed")), crowded_out(study), Styles(), []
@@ -42,8 +44,7 @@ def campbell(study, _):
     panels = [{"x": ("speed", unit), "y": ("natural frequency", hertz), "limits": [0, *rounded([limit * to_frequency], 2)], "span": rounded(span(ends) * to_speed), "height": 420,
                "places": service_place(study, unit)}]
     if damped_at_all:
-        inside = decrements[np.isfinite(decrements)]
-        low, high = min(-0.1, inside.min() * 1.15), max(0.3, min(1.0, np.quantile(inside, 0.85)))
+        low, high = range_of(decrements)
         lines.append(line(ends * to_speed, [0, 0], None, 1, colour=INK, quiet=True, w=1.0))
         panels.append({"x": ("speed", unit), "y": ("logarithmic decrement", ""), "limits": rounded([low, high], 2), "span": panels[0]["span"], "height": 260, "places": panels[0]["places"],
                        "title": "Damping, unstable below zero"})

@@ -10,6 +10,8 @@ LONGEST, ORBIT, TOP = 4000, 6000, 6.0  # points of a history, of an orbit; highe
 
 
 def history(study, _):
+    if not study.has("orbit/x", "orbit/y"):
+        return None
     scale, unit = study.micro
     samples = int(round(study.attribute("samples", 0)))
     x, y = (study.get(f"orbit/{d}")[-LATEST * samples:] * scale for d in "xy")
@@ -26,6 +28,8 @@ def history(study, _):
 
 
 def motion(study, _):
+    if not study.has("orbit/x", "poincare/x", "spectrum/x"):
+        return None
     scale, unit = study.micro
     unit = "" if unit == "1" else unit
     cut = "section" if study.has("section/x", "section/y") else "poincare"

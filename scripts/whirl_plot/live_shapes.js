@@ -66,11 +66,14 @@ class WhirlShapes {
     c.clearRect(0, 0, w, h);
     c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
     // z to the right, y up, x to the back; the shaft fills the width.
-    const long = z[z.length - 1] - z[0] || 1, size = Math.min(0.42 * w * (Math.abs(Math.cos(this.yaw)) > 0.3 ? 1 : 1.4), 0.9 * h), side = 0.26 * Math.min(w, 1.6 * h);
+    const long = z[z.length - 1] - z[0] || 1, thick = 0.3 * Math.max(1, Math.min(2.5, 2.2 * h / w));
     const [cy, sy, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
+    const flat = (a, b, y) => [a * cy + b * sy, -y * cp - (b * cy - a * sy) * sp];
+    const corners = [-1, 1].flatMap(a => [-thick, thick].flatMap(b => [-thick, thick].map(y => flat(a, b, y))));
+    const size = Math.min((w / 2 - 24) / Math.max(...corners.map(p => p[0])), (h / 2 - 18) / Math.max(...corners.map(p => p[1])));
     const at = (pz, x, y) => {
-      const a = (2 * (pz - z[0]) / long - 1) * size, b = x * side, back = -a * sy + b * cy;
-      return [w / 2 + a * cy + b * sy, h / 2 - y * side * cp - back * sp];
+      const [px, py] = flat(2 * (pz - z[0]) / long - 1, x * thick, y * thick);
+      return [w / 2 + size * px, h / 2 + size * py];
     };
     const path = (points, colour, width, dash = []) => {
       c.beginPath();
@@ -102,7 +105,7 @@ class WhirlShapes {
     }
     path(z.map((pz, k) => at(pz, ...where(k, turn))), '#222', 2.2);
     for (const [x, y, name] of [[1, 0, 'x'], [0, 1, 'y']]) {
-      const end = at(z[0], 1.15 * x, 1.15 * y);
+      const end = at(z[0], x, y);
       path([at(z[0], 0, 0), end], '#222', 1);
       c.fillStyle = '#222';
       c.fillText(name, end[0] + 4, end[1]);

@@ -14,7 +14,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import command  # noqa: E402
 import synthetic  # noqa: E402
-from whirl_plot import live, live_motion, style  # noqa: E402
+from whirl_plot import campbell, live, live_modes, live_motion, style  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 RPM = 30 / np.pi
@@ -176,6 +176,17 @@ def page(folder):
     assert done.returncode == 0 and "period two: the chart 'history' cannot be made" in done.stderr and set(charts_of((folder / "report.html").read_text())) == CHARTS - {"period_two.history"}, done.stderr
 
 
+def creeping(folder):
+    """A machine without a frequency has neither a Campbell diagram nor its chart."""
+    synthetic.make(folder)
+    with h5py.File(folder / "results.h5", "a") as root:
+        root["studies/modes/spectrum/frequency"][...] = 0
+        root["studies/modes/spectrum/log_decrement"][...] = np.inf
+    with Drawn(folder) as results:
+        assert campbell.draw(results["modes"]) == [] and live_modes.campbell(results["modes"], "campbell") is None
+    assert campbell.range_of(np.array([np.inf])) == (-0.1, 0.3)
+
+
 def numbers(_):
     """Six digits, whole numbers without a point, no number where there is none."""
     assert live.rounded([1234.5678, -0.00123456789, 0, np.nan, np.inf, 5e9, 3.0]) == [1234.57, -0.00123457, 0, None, None, 5000000000, 3]
@@ -191,7 +202,7 @@ def licence(_):
     assert "Chart.js v" in text[:5000] and "Permission is hereby granted" in text[:5000] and "</script" not in text
 
 
-for check in (numbers, licence, page):
+for check in (numbers, licence, creeping, page):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("the charts hold the results")
