@@ -35,11 +35,11 @@ STYLE = """
 .key{font:inherit;border:1px solid var(--line);border-radius:4px;background:#fff;padding:.1em .5em;cursor:pointer;color:var(--ink)}
 .key[aria-pressed=false].toggle{color:var(--grey);text-decoration:line-through;background:#f3f6f9} .style{color:var(--grey)} .reset{border-color:var(--blue);color:var(--blue)}
 .swatch{display:inline-block;min-width:1.3em;vertical-align:middle;text-align:center;line-height:0}
-.panels.beside{display:grid;grid-template-columns:minmax(0,1.7fr) minmax(0,1fr);gap:.6em} .chart{position:relative;height:360px;min-width:0} .chart.square,.chart.shapes{height:400px} .chart.square{max-width:640px}
+.panels.beside{display:grid;grid-template-columns:minmax(0,1.7fr) minmax(0,1fr);gap:.6em} .chart{position:relative;height:360px;min-width:0} .chart.square,.chart.shapes{height:400px} .chart.square{max-width:640px} .beside>.chart{height:400px}
 .chart canvas{touch-action:pan-y;width:100%;height:100%} canvas:focus-visible{outline:2px solid var(--blue);outline-offset:2px} .live{border:1px solid var(--line);border-radius:4px;padding:.6em}
 .said{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)} .live,.charts-note{display:none} .has-charts .charts-note{display:block}
 .has-charts .charted>.live{display:block} .has-charts .charted img{display:none}
-@media (max-width:700px){.panels.beside{grid-template-columns:minmax(0,1fr)} .chart{height:300px} .live{padding:.3em}}
+@media (max-width:700px){.panels.beside{grid-template-columns:minmax(0,1fr)} .chart,.beside>.chart{height:300px} .chart.square{height:340px} .live{padding:.3em}}
 @media print{.has-charts .charted>.live,.has-charts .charts-note{display:none} .has-charts .charted img{display:inline}}
 """
 NOTE = ("Charts show the value under the cursor. Drag a frame to zoom, double-click for the whole range, press the names to switch curves on and off. "

@@ -92,7 +92,9 @@ def orbit_panel(unit):
 
 
 def chart(study, lines, panels, names, **more):
-    return {"panels": panels, "lines": lines, "styles": [{"t": "stable"}, {"d": 1, "t": "unstable"}], "choose": {"name": "at", "of": names}, **more}
+    styles = [{"t": "stable"}, {"d": 1, "t": "unstable"}]
+    both = any(c.get("d") == 1 for c in lines)
+    return {"panels": panels, "lines": lines, "styles": styles, "keys": styles if both else [], "choose": {"name": "at", "of": names}, **more}
 
 
 def services(study):

@@ -114,6 +114,7 @@ def values(folder, charts):
         orbits = [c for c in named(chart, "pair, G6.3", 1, 2) if c.get("f") is not None]
         kept = study.orbits
         assert [c["f"] for c in orbits] == [o.point for o in kept] and close(orbits[3]["x"][:-1], kept[3].x[::len(kept[3].x) // 96, 2] * 1e6), "orbits"
+        assert close(orbits[3]["y"][:-1], kept[3].y[::len(kept[3].y) // 96, 2] * 1e6, 1e-4), "orbits"
         assert chart["panels"][1]["equal"] and named(chart, "clearance", 1, 2) and orbits[0]["x"][0] == orbits[0]["x"][-1]
         assert {c["n"] for c in charts["bifurcations"]["lines"] if not c.get("m")} >= {"balanced", "pair, G2.5", "pair, G6.3"}
 
@@ -132,9 +133,11 @@ def values(folder, charts):
         assert phase["y"][broken] > 0 > phase["y"][broken + 1], broken
         chart, study = charts["modes.shapes-3d"], results["modes"]
         assert len(chart["modes"]) == 6 and chart["modes"][1]["t"].startswith("2: 12.589 Hz"), [m["t"] for m in chart["modes"]]
-        x = np.array(chart["modes"][1]["x"][0]) + 1j * np.array(chart["modes"][1]["x"][1])
+        x, y = (np.array(chart["modes"][1][d][0]) + 1j * np.array(chart["modes"][1][d][1]) for d in "xy")
         wave = np.sin(2 * np.pi * np.array(chart["z"]) / 32)
         assert abs(abs(np.vdot(wave, x)) / np.linalg.norm(wave) / np.linalg.norm(x) - 1) < 1e-4, "shape of mode 2"
+        sense = (np.conj(study.get("shapes/x_real") + 1j * study.get("shapes/x_imag")) * (study.get("shapes/y_real") + 1j * study.get("shapes/y_imag"))).imag[1, 50]
+        assert np.sign(np.vdot(x, y).imag) == np.sign(sense) != 0, "sense of whirl"
 
 
 def page(folder):
@@ -147,13 +150,14 @@ def page(folder):
     with h5py.File(folder / "results.h5", "a") as root:
         for name in ("pair, G2.5", "pair, G6.3"):
             root[f"studies/{name}/orbits"]["point"] = np.linspace(0, 139, 20).astype(int)
-        root["studies/pair, G2.5"].attrs["unbalance"] = "</script><b>"
+        root["studies/pair, G6.3"].attrs["end"] = "the film is broken through </script><b>"
         oscillator(root)
     with with_library("/*! a library */"):
         done = command.call("report", folder)
         assert done.returncode == 0 and not done.stderr, done.stderr
         text = (folder / "report.html").read_text()
         charts = charts_of(text)
+        assert "</script><b>" not in text and "\\u003c/script>" in text, "a text of the results ends a script"
         assert set(charts) == CHARTS, set(charts) ^ CHARTS
         for name, chart in charts.items():
             whole(chart, name)
