@@ -100,7 +100,9 @@ def run_up(results, _):
 
 def transfer(study, what):
     """Amplitude and phase of one output over the frequency, a colour for each input."""
-    response = study.group["response"]
+    response = study.group.get("response", {})
+    if "machine" not in response:
+        return None
     ways, output = list(transfers.ways_of(response)), what.removeprefix("response-")
     pairs = [p for p in response["machine"] if study_name(p.split(".from.")[0]) == study_name(output)]
     unit = study.attribute("frequency_unit", "rad/s")
