@@ -157,12 +157,23 @@ std::array<double, 3> ModeBars::at(int id, double speed) const {
   std::array<double, 3> out{unknown, unknown, unknown};
   const auto found = of_.find(id);
   if (found == of_.end()) return out;
-  const auto& points = found->second;
-  auto right = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.speed >= speed; });
-  const auto left = right == points.begin() ? right : std::prev(right);
-  if (right == points.end()) right = left;
-  for (std::size_t k = 0; k < 3; ++k)
-    out[k] = std::isnan(left->bar[k]) || std::isnan(right->bar[k]) ? unknown : std::max(left->bar[k], right->bar[k]);
+  const std::vector<Point>& points = found->second;
+  const std::size_t last = points.size() - 1;
+  const auto largest = [&](std::size_t at, std::size_t k) {
+    double bar = points[at].bar[k];
+    if (std::isnan(bar)) return unknown;
+    for (std::size_t j = at > 0 ? at - 1 : 0; j <= std::min(at + 1, last); ++j) bar = std::fmax(bar, points[j].bar[k]);
+    return bar;
+  };
+  std::size_t right = 0;
+  while (right < last && points[right].speed < speed) ++right;
+  const std::size_t left = right > 0 && points[right].speed != speed ? right - 1 : right;
+  const double span = points[right].speed - points[left].speed,
+               share = span > 0 ? std::clamp((speed - points[left].speed) / span, 0.0, 1.0) : 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out[k] = largest(right, k);
+    if (left != right) out[k] = (1 - share) * largest(left, k) + share * out[k];
+  }
   return out;
 }
 

@@ -36,8 +36,10 @@ public:
   ModeBars(const Context& context, const Layout& layout, Pieces& pieces, const std::vector<SampledModes>& sampled,
            const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at);
 
-  /// Bars of the real part [1/s], imaginary part [rad/s] and log decrement of a mode: the larger one of the neighbours,
-  /// so that a difference of meshes that vanishes by chance at one speed hides nothing. NaN: unknown.
+  /// Bars of the real part [1/s], imaginary part [rad/s] and log decrement of a mode. At a speed with other meshes each
+  /// is the largest of its own and those of the neighbours, so that a difference of meshes that vanishes by chance at
+  /// one speed hides nothing; between two of these speeds it is on a straight line, so that eigenvalues at neighbouring
+  /// speeds have like bars. NaN: unknown.
   [[nodiscard]] std::array<double, 3> at(int id, double speed) const;
   /// The largest error of a frequency by the mesh of the shaft as "shaft_mesh.largest_error" [1], with a warning above
   /// one per cent that names the element; and which of the modes that results show have no bars, and why.
