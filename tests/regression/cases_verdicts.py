@@ -67,6 +67,17 @@ def bearing_map(h):
     s = h.run(h.source / "inputs/compliant_rotor/short.yaml", "map",
               ["bearings.half.film.compliance=0.05", "studies=[{bearing_map: {name: map, speed: 160 rad/s, points: 2, max_eccentricity: 0.6}}]"])["map"]
     h.true("the map of a soft bearing is complete with two points", s["status"] == "completed" and s["points"] == 2, s["status"])
+    # Central differences fold the locus. Its folds on 60 cells by an independent continuation (NumPy, dense): 0.84324, 0.75561
+    # and 0.96119, from where it turns back to contact.
+    for points in (5, 7, 10):
+        s = h.run(h.source / "inputs/compliant_rotor/short.yaml", f"map{points}",
+                  ["bearings.half.film.compliance=0.05", "bars=none",
+                   f"studies=[{{bearing_map: {{name: map, speed: 160 rad/s, points: {points}, max_eccentricity: 1.2}}}}]"])["map"]
+        h.close(f"{points} points: the locus ends at its last fold", value(s, "limit.eccentricity"), 0.96119, 1e-4)
+        h.true("and says so", s["status"].startswith("ended at eccentricity 0.961") and "turns back there" in s["status"], s["status"])
+        h.true("with the folds before", any("0.7556" in w and "to 0.8432" in w for w in s["warnings"]), str(s["warnings"]))
+        h.true("which upwind differences do not have", any("upwind" in w for w in s["warnings"]), str(s["warnings"]))
+        h.true("all points before are there", s["points"] == sum(1.2 * k / points < 0.961 for k in range(1, points + 1)), str(s["points"]))
 
 
 def several(h):

@@ -1,20 +1,24 @@
 #include "whirl/study/bearing/bearing_map.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <type_traits>
+#include <variant>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bearing/one_bearing.hpp"
+#include "study/bearing/bearing_mapper.hpp"
 #include "study/common.hpp"
-#include "study/pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/elastic.hpp"
+#include "whirl/film/options.hpp"
 #include "whirl/system/groups.hpp"
 
 namespace whirl::study {
@@ -22,229 +26,16 @@ namespace {
 
 constexpr std::array<const char*, 4> entries = {"xx", "xy", "yx", "yy"};
 
-/// A point of the locus with its coefficients at all frequencies.
-struct Point {
-  BearingEquilibrium at;
-  std::vector<BearingCoefficients> coefficients;
-};
-
-/// A point at a load that was asked for.
-struct Loaded {
-  double sommerfeld = 0;
-  Point point;
-  BearingProfile profile;
-};
-
-void write(io::Group& g, const Point& p) {
-  std::vector<double> numbers{p.at.eccentricity, p.at.attitude, p.at.sommerfeld, p.at.speed_limit, p.at.whirl_ratio};
-  for (const BearingCoefficients& c : p.coefficients)
-    for (const auto* of : {&c.k, &c.b}) numbers.insert(numbers.end(), of->begin(), of->end());
-  g.put("numbers", std::move(numbers), "1", "the equilibrium, then stiffness and damping of each frequency");
-  g.put("states", p.at.states, "1", "of the film");
-}
-Point read_point(const io::Group& g) {
-  const std::vector<double>& n = g.reals("numbers");
-  Point p{{n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), g.reals("states")}, {}};
-  for (std::size_t k = 5; k + 8 <= n.size(); k += 8) {
-    BearingCoefficients& c = p.coefficients.emplace_back();
-    for (std::size_t i = 0; i < 4; ++i) {
-      c.k[i] = n[k + i];
-      c.b[i] = n[k + 4 + i];
-    }
-  }
-  return p;
-}
-
-// What one rank computes, all alike; each point is a piece of the checkpoint, its name begins with `head`. Collective.
-class Mapper {
-public:
-  Mapper(const Context& context, Pieces& pieces, std::string head, const BearingMapOptions& options,
-         const system::Support& support)
-      : comm_(context.comm), pieces_(pieces), head_(std::move(head)), options_(options) {
-    core::agree(comm_, [&] { bearing_.emplace(support, options_.speed.value); });
-  }
-
-  // Where no film is found the locus has a gap; some bores carry no vertical load at small eccentricities.
-  void follow() {
-    BearingEquilibrium last;
-    core::agree(comm_, [&] { last = bearing_->centred(); });
-    for (int i = 1; i <= options_.points; ++i) {
-      const double wanted = options_.max_eccentricity * i / options_.points;
-      const auto point = piece(fmt::format("point {}", i), [&]() -> std::optional<Point> {
-        const auto e = reach(last, wanted);
-        if (!e) return std::nullopt;
-        return complete(*e);
-      });
-      if (!point) {
-        missing.push_back(wanted);
-        continue;
-      }
-      locus.push_back(*point);
-      last = point->at;
-    }
-  }
-
-  // The first place on the locus where `margin` changes its sign; the bearing is left there. Not collective.
-  std::optional<Point> find(const std::function<double(const BearingEquilibrium&)>& margin) {
-    for (std::size_t i = 0; i + 1 < locus.size(); ++i) {
-      if (margin(locus[i].at) * margin(locus[i + 1].at) > 0) continue;
-      BearingEquilibrium low = locus[i].at, high = locus[i + 1].at;
-      for (int k = 0; k < 60; ++k) {
-        const auto middle = reach(low, 0.5 * (low.eccentricity + high.eccentricity));
-        if (!middle) return std::nullopt;
-        (margin(*middle) * margin(low) > 0 ? low : high) = *middle;
-      }
-      return complete(low);
-    }
-    return std::nullopt;
-  }
-
-  // A load that the map does not reach is refused: whoever asked for it would look for its values in vain.
-  void load() {
-    for (const double s : options_.sommerfeld) {
-      BearingProfile profile;
-      const auto point = piece(
-          fmt::format("load {:.17g}", s),
-          [&] {
-            auto there = find([s](const BearingEquilibrium& e) { return e.sommerfeld - s; });
-            if (there) profile = bearing_->profile();
-            return there;
-          },
-          &profile);
-      if (point)
-        loaded.push_back({s, *point, profile});
-      else
-        refuse(s);
-    }
-  }
-
-  // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A soft
-  // film or one with own states is another one at every speed: its thresholds belong to branches of equilibria.
-  void find_threshold(const std::optional<system::Groups>& groups) {
-    if (!groups || !bearing_->rigid()) return;
-    const auto found = piece("threshold", [&] {
-      return find([&](const BearingEquilibrium& e) {
-        return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
-      });
-    });
-    if (found) threshold = found->at;
-  }
-
-  void squeeze() {
-    if (!bearing_->rigid()) return;
-    // W grows like powers of 1/(1 - e): its logarithm is all but linear in log(1 - e).
-    const int last = options_.grid - 1;
-    for (int i = 0; i <= last; ++i)
-      radii.push_back(1 - std::pow(1 - options_.max_eccentricity, static_cast<double>(i) / last));
-    for (int j = 0; j <= 2 * last; ++j) angles.push_back(std::numbers::pi * j / last);
-    for (std::size_t r = 0; r < radii.size(); ++r) {
-      const double e = radii[r];
-      const std::vector<double> row = pieces_.numbers(fmt::format("{}impedance {}", head_, r), [&] {
-        std::vector<double> out;
-        core::agree(comm_, [&] {
-          for (const double phi : angles) {
-            const auto w = bearing_->impedance(e * std::cos(phi), e * std::sin(phi));
-            out.insert(out.end(), w.begin(), w.end());
-          }
-        });
-        return out;
-      });
-      for (std::size_t k = 0; k + 1 < row.size(); k += 2) {
-        along.push_back(row[k]);
-        across.push_back(row[k + 1]);
-      }
-    }
-  }
-
-  std::vector<Point> locus;
-  std::vector<Loaded> loaded;
-  std::optional<BearingEquilibrium> threshold;
-  std::vector<double> radii, angles, along, across;
-  std::vector<double> missing;  // eccentricities without a film that carries a load downwards
-  std::string refused;          // loads that the map does not reach, with the reason
-
-  [[nodiscard]] bool ends_early() const {
-    return locus.back().at.eccentricity < options_.max_eccentricity * (1 - 1e-12);
-  }
-
-private:
-  // In as few steps as lead there: from a far one the film of a soft bearing may not be found although it exists. An
-  // earlier start may lead past where none is found.
-  std::optional<BearingEquilibrium> reach(const BearingEquilibrium& last, double wanted) {
-    constexpr int near = 64, far = 4;
-    if (bearing_->rigid() || wanted <= last.eccentricity) return bearing_->carrying(wanted, last);
-    auto found = reach(last, wanted, near);
-    for (auto earlier = locus.rbegin(); !found && earlier != locus.rend(); ++earlier)
-      found = reach(earlier->at, wanted, far);
-    return found;
-  }
-  std::optional<BearingEquilibrium> reach(BearingEquilibrium last, double wanted, int most_steps) {
-    const double shortest = (wanted - last.eccentricity) / most_steps;
-    for (double step = wanted - last.eccentricity; step >= shortest;) {
-      const double next = std::min(last.eccentricity + step, wanted);
-      if (auto e = bearing_->carrying(next, last)) {
-        if (next == wanted) return e;
-        last = std::move(*e);
-      } else {
-        step /= 2;
-      }
-    }
-    return {};
-  }
-  void refuse(double s) {
-    if (locus.empty()) return;
-    const auto [low, high] = std::minmax_element(
-        locus.begin(), locus.end(), [](const Point& a, const Point& b) { return a.at.sommerfeld < b.at.sommerfeld; });
-    const bool small = s < low->at.sommerfeld;
-    refused += fmt::format(
-        "{}the load {:.6g} of 'sommerfeld' lies beyond the map, which reaches from {:.6g} at eccentricity {:.4g} to "
-        "{:.6g} at {:.4g}: {}",
-        refused.empty() ? "" : "; ", s, low->at.sommerfeld, low->at.eccentricity, high->at.sommerfeld,
-        high->at.eccentricity,
-        small          ? "give more 'points', which begin at smaller eccentricities"
-        : ends_early() ? "beyond it no film was found"
-                       : "raise 'max_eccentricity'");
-  }
-  Point complete(const BearingEquilibrium& e) {
-    Point p{e, {}};
-    for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_->coefficients(ratio));
-    return p;
-  }
-  // What `compute` finds, and the profile that it leaves; none if it finds none.
-  std::optional<Point> piece(const std::string& name, const std::function<std::optional<Point>()>& compute,
-                             BearingProfile* profile = nullptr) {
-    const io::Group& kept = pieces_.get(head_ + name, [&](io::Group& g) {
-      std::optional<Point> found;
-      core::agree(comm_, [&] { found = compute(); });
-      if (!found) return;
-      write(g, *found);
-      if (!profile) return;
-      g.put("theta", profile->theta, "rad", "of the profile");
-      g.put("pressure", profile->pressure, "1", "of the profile");
-      g.put("thickness", profile->thickness, "1", "of the profile");
-    });
-    if (!kept.has_dataset("numbers")) return std::nullopt;
-    if (profile) *profile = {kept.reals("theta"), kept.reals("pressure"), kept.reals("thickness")};
-    return read_point(kept);
-  }
-
-  MPI_Comm comm_;
-  Pieces& pieces_;
-  std::string head_;
-  const BearingMapOptions& options_;
-  std::optional<OneBearing> bearing_;
-};
-
 // One column of the locus.
 template <class Value>
-std::vector<double> column(const std::vector<Point>& locus, const Value& value) {
+std::vector<double> column(const std::vector<MapPoint>& locus, const Value& value) {
   std::vector<double> out;
-  for (const Point& p : locus) out.push_back(value(p));
+  for (const MapPoint& p : locus) out.push_back(value(p));
   return out;
 }
 
-void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vector<double>& frequencies) {
-  using P = Point;
+void put_locus(io::Group& group, const std::vector<MapPoint>& locus, const std::vector<double>& frequencies) {
+  using P = MapPoint;
   auto& table = group.child("locus");
   table.put("eccentricity", column(locus, [](const P& p) { return p.at.eccentricity; }), "1", "in clearances");
   table.put("attitude", column(locus, [](const P& p) { return p.at.attitude; }), "rad", "from the load to the journal");
@@ -270,7 +61,7 @@ void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vec
   over.put("ratio", frequencies, "1", "omega/Omega");
   for (std::size_t i = 0; i < 4; ++i) {
     std::vector<double> k, b;
-    for (const Point& p : locus)
+    for (const MapPoint& p : locus)
       for (const BearingCoefficients& c : p.coefficients) {
         k.push_back(c.k[i]);
         b.push_back(c.b[i]);
@@ -282,9 +73,9 @@ void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vec
   over.label_each({io::labels_of(frequencies)});
 }
 
-void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<Loaded>& loaded) {
+void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<LoadedPoint>& loaded) {
   std::vector<double> sommerfeld, pressure, thickness;
-  for (const Loaded& l : loaded) {
+  for (const LoadedPoint& l : loaded) {
     const std::string head = fmt::format("sommerfeld.{:.6g}.", l.sommerfeld);
     summary.set(head + "eccentricity", l.point.at.eccentricity, "1");
     summary.set(head + "attitude", l.point.at.attitude, "rad");
@@ -318,15 +109,57 @@ void put_threshold(io::StudySummary& summary, const Mapper& map, const std::opti
   summary.set("threshold.whirl_ratio", map.threshold->whirl_ratio, "1");
 }
 
+void put_limit(io::StudySummary& summary, const Mapper& map) {
+  if (map.limit) summary.set("limit.eccentricity", map.limit->eccentricity, "1");
+}
+
+// Whether the same film goes on beyond the limit with upwind differences, which make no waves of the mesh. Collective.
+bool goes_on_upwind(const Context& context, Pieces& pieces, BearingMapOptions options, const system::Support& support,
+                    const MapLimit& limit) {
+  const auto* compliant = film::find<film::Compliant>(support.film);
+  if (!compliant || compliant->differences == film::Compliant::Differences::upwind) return false;
+  system::Support other = support;
+  std::visit(
+      [](auto& kind) {
+        if constexpr (std::is_base_of_v<film::Compliant, std::decay_t<decltype(kind)>>)
+          kind.differences = film::Compliant::Differences::upwind;
+      },
+      other.film.kind);
+  options.max_eccentricity = std::min(options.max_eccentricity, 1.1 * limit.eccentricity);
+  options.points = 1;
+  return has_answer([&] {
+    Mapper upwind(context, pieces, "upwind ", options, other);
+    upwind.follow();
+    if (upwind.limit || upwind.locus.empty()) throw core::NotConverged("it ends as well");
+  });
+}
+
+std::string in_words(const MapLimit& limit) {
+  return fmt::format("ended at eccentricity {:.6g}: {}{}", limit.eccentricity,
+                     limit.fold ? "the locus turns back there (a fold)" : "beyond it no film was found",
+                     limit.why.empty() ? "" : " (" + limit.why + ")");
+}
+
+// Where the locus turns back and forth it passes the eccentricities between three times.
+std::string of_folds(const std::vector<double>& folds) {
+  std::vector<std::string> ranges;
+  for (std::size_t k = 0; k + 1 < folds.size(); k += 2)
+    ranges.push_back(fmt::format("{:.6g} to {:.6g}", folds[k + 1], folds[k]));
+  return fmt::format(
+      "the locus turns back and forth and has several equilibria at one eccentricity ({}): the map has the first one "
+      "along the locus, and jumps where this one ends",
+      fmt::join(ranges, ", "));
+}
+
 // What the locus says at one eccentricity, in the order of `with_bars`.
 constexpr std::array<const char*, 12> with_bars = {"attitude", "sommerfeld", "speed_limit", "whirl_ratio",
                                                    "k_xx",     "k_xy",       "k_yx",        "k_yy",
                                                    "c_xx",     "c_xy",       "c_yx",        "c_yy"};
-std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vector<Point>& like) {
+std::vector<double> numbers_of(const std::vector<MapPoint>& locus, const std::vector<MapPoint>& like) {
   std::vector<double> out;
-  for (const Point& wanted : like) {
+  for (const MapPoint& wanted : like) {
     const auto at = std::find_if(locus.begin(), locus.end(),
-                                 [&](const Point& p) { return p.at.eccentricity == wanted.at.eccentricity; });
+                                 [&](const MapPoint& p) { return p.at.eccentricity == wanted.at.eccentricity; });
     if (at == locus.end()) {
       out.insert(out.end(), with_bars.size(), io::no_value);
       continue;
@@ -363,6 +196,7 @@ void put_bars(const Context& context, Pieces& pieces, const BearingMapOptions& o
       io::Group unused;
       put_loaded(unused, there, other.loaded);
       put_threshold(there, other, groups);
+      put_limit(there, other);
     });
     if (!answered) numbers.clear();
     bars.add(mesh.axis, mesh.spacing, numbers);
@@ -417,17 +251,20 @@ StudyResult BearingMap::run(Context& context) {
     table.label_each({io::labels_of(map.angles)});
   }
   put_threshold(summary, map, groups);
+  put_limit(summary, map);
   put_bars(context, pieces, options, which, map, groups);
   summary.points = static_cast<long>(map.locus.size());
   if (!map.refused.empty()) return results.finish(map.refused, false);
-  const double end = map.locus.back().at.eccentricity;
+  const double end = map.limit ? map.limit->eccentricity : options.max_eccentricity;
   std::string gaps;
   for (const double e : map.missing)
     if (e > map.locus.front().at.eccentricity && e < end) gaps += fmt::format("{}{:.4g}", gaps.empty() ? "" : ", ", e);
   if (!gaps.empty()) summary.warnings.push_back("no film was found at the eccentricities " + gaps);
-  return results.finish(
-      map.ends_early() ? fmt::format("ended at eccentricity {:.6g}: beyond it no film was found", end) : "completed",
-      true);
+  if (map.folds.size() > 1) summary.warnings.push_back(of_folds(map.folds));
+  if (map.limit && goes_on_upwind(context, pieces, options, train.supports[which], *map.limit))
+    summary.warnings.push_back(
+        "with 'differences: upwind' the locus goes on beyond its end: waves of the mesh end it, not the bearing");
+  return results.finish(map.limit ? in_words(*map.limit) : "completed", true);
 }
 
 }  // namespace whirl::study

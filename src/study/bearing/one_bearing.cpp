@@ -87,6 +87,25 @@ std::optional<BearingEquilibrium> OneBearing::carrying(double eccentricity, cons
   return e;
 }
 
+std::optional<BearingEquilibrium> OneBearing::carrying(const JournalLocus::Node& node) {
+  BearingEquilibrium e;
+  states_ = node.states;
+  motion_.position = {node.place[0] * clearance_, node.place[1] * clearance_, 0, 0};
+  try {
+    film_->evaluate(motion_, states_, rest_, film::Need::force, response_);
+    e.eccentricity = node.eccentricity();
+    e.attitude = std::atan2(node.place[0], -node.place[1]);
+    e.sommerfeld = response_.journal.force[1] / load_;
+    e.states = states_;
+    set_border(e);
+  } catch (const core::DomainError&) {
+    return std::nullopt;
+  } catch (const core::NotConverged&) {
+    return std::nullopt;
+  }
+  return e;
+}
+
 // The border of stability of a rigid rotor: it whirls freely at nu Omega, det(k - k_e + i nu b) = 0 with the effective
 // stiffness k_e = nu^2 m c Omega^2/(load of F* = 1). Coefficients that depend on the frequency are those at nu.
 void OneBearing::set_border(BearingEquilibrium& e) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "study/bearing/journal_locus.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/system/train.hpp"
 
@@ -45,6 +46,10 @@ public:
   [[nodiscard]] std::optional<BearingEquilibrium> carrying(double eccentricity, const BearingEquilibrium& near);
   /// The centred journal, to start from.
   [[nodiscard]] BearingEquilibrium centred() const;
+  /// Its equilibria, whose nodes follow() of it has not found yet. Only one locus of a bearing is in use.
+  [[nodiscard]] JournalLocus locus() { return {*film_, clearance_, speed_, load_}; }
+  /// The equilibrium at a node of the locus.
+  [[nodiscard]] std::optional<BearingEquilibrium> carrying(const JournalLocus::Node& node);
   /// Of the equilibrium found last, at the frequency ratio omega/Omega; it matters for films with own states only.
   /// Source: van de Vrande (2001) secs. 4.3 and 4.4.
   [[nodiscard]] BearingCoefficients coefficients(double ratio);
