@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "branch_state.hpp"
 #include "first_guess.hpp"
@@ -94,11 +95,13 @@ bool Walker::attempt(double speed) {
 
 Trail Walker::trail() {
   const auto leave = [this] {
+    if (!x_) return std::vector<double>{};  // it has found nothing yet
     std::vector<double> state = system_.gather(x_.get());
     state.push_back(last_);
     return state;
   };
   const auto take = [this](const std::vector<double>& state) {
+    if (state.empty()) return void(x_ = {});
     if (!x_) x_ = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
     core::fill(x_.get(), {state.begin(), state.end() - 1});
     last_ = state.back();
@@ -106,30 +109,52 @@ Trail Walker::trail() {
   return {leave, take};
 }
 
+// Where nothing leads to from the neighbour there may be an equilibrium all the same: a speed behind a range without
+// any.
 Vec Walker::at(double speed) {
   if (!x_) {
+    start_at(speed);
+  } else if (!walk_to(speed)) {
+    const std::string why =
+        fmt::format("the equilibrium could not be followed from {:.6g} to {:.6g} rad/s: {}", last_, speed, reason_);
+    const double before = last_;
     system_.set_parameter(speed);
-    x_ = first_guess(system_);
-    // A thick film is easier to hit than a thin one: start at a higher speed if need be and come down.
-    double start = speed;
-    for (int k = 0; !attempt(start); ++k) {
-      if (k == 12) throw core::NotConverged(fmt::format("no equilibrium near {:.6g} rad/s: {}", speed, reason_));
-      start *= 1.4;
-      system_.set_parameter(start);
-      x_ = first_guess(system_);
+    core::Vector kept = std::exchange(x_, first_guess(system_));
+    if (!attempt(speed)) {
+      x_ = std::move(kept);
+      last_ = before;
+      throw core::NotConverged(why);
     }
   }
+  system_.set_parameter(speed);
+  return x_.get();
+}
+
+// A thick film is easier to hit than a thin one: from a higher speed if need be.
+void Walker::start_at(double speed) {
+  constexpr int higher = 12;
+  double start = speed;
+  for (int k = 0; k <= higher; ++k, start *= 1.4) {
+    system_.set_parameter(start);
+    x_ = first_guess(system_);
+    if (!attempt(start)) continue;
+    if (walk_to(speed)) return;
+    throw core::NotConverged(
+        fmt::format("the equilibrium could not be followed from {:.6g} to {:.6g} rad/s: {}", last_, speed, reason_));
+  }
+  x_ = {};
+  throw core::NotConverged(fmt::format("no equilibrium near {:.6g} rad/s: {}", speed, reason_));
+}
+
+bool Walker::walk_to(double speed) {
   double step = speed - last_;
   while (last_ != speed) {
     const double next = std::abs(step) >= std::abs(speed - last_) ? speed : last_ + step;
     if (attempt(next)) continue;
     step = (next - last_) / 2;
-    if (std::abs(step) < 1e-4 * std::max(1.0, speed))
-      throw core::NotConverged(
-          fmt::format("the equilibrium could not be followed from {:.6g} to {:.6g} rad/s: {}", last_, speed, reason_));
+    if (std::abs(step) < 1e-4 * std::max(1.0, speed)) return false;
   }
-  system_.set_parameter(speed);
-  return x_.get();
+  return true;
 }
 
 solve::Stability equilibrium_stability(system::Plant& system, Vec x) {

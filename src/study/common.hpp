@@ -44,6 +44,8 @@ public:
 
 private:
   bool attempt(double speed);
+  void start_at(double speed);
+  [[nodiscard]] bool walk_to(double speed);
   system::Plant& system_;
   core::Vector x_, trial_;
   double last_ = 0;

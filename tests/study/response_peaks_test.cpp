@@ -51,6 +51,24 @@ TEST(ResponsePeaks, ASingleResonanceIsMetFromACoarseGrid) {
   EXPECT_GE(p.errors.factor, width_tolerance);
 }
 
+// A speed without an answer ends the curve as the range does: what rises toward it is no peak.
+TEST(ResponsePeaks, AGapIsAnEndOfTheCurve) {
+  ResponseCurve c = sampled({200, 240, 270, 282, 283.7, 285, 300, 310, 360});
+  ASSERT_EQ(c.tops().size(), 1U);
+  c.height[4] = std::nan("");
+  EXPECT_TRUE(c.tops().empty());
+  // A gap on the flank leaves the peak, without the width that it had there.
+  c = sampled({200, 240, 270, 282, 283.7, 285, 300, 310, 360});
+  c.height[5] = std::nan("");
+  EXPECT_TRUE(c.tops().empty());
+  c = sampled({200, 240, 270, 283, 283.7, 284, 300, 310, 360});
+  c.height[6] = std::nan("");
+  ASSERT_EQ(c.tops().size(), 1U);
+  const Peak p = peak_at(c, c.tops().front());
+  EXPECT_TRUE(std::isnan(p.amplification));
+  EXPECT_EQ(p.no_factor, "the response does not fall to 0.707 of the peak above it before the answers end");
+}
+
 TEST(ResponsePeaks, WhatWasNotRefinedIsUnknown) {
   const ResponseCurve c = sampled({200, 240, 270, 310, 360});
   const Peak p = peak_at(c, c.tops().front());

@@ -1,5 +1,5 @@
 #pragma once
-// Speeds of a response at which the machine has none: undamped resonances.
+// Speeds of a response at which the machine has none: undamped resonances, and where it has no equilibrium.
 
 #include <functional>
 #include <map>

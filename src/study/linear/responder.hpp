@@ -27,8 +27,6 @@ public:
   Responder(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options,
             std::vector<int> nodes, const FilmMesh& mesh = {});
 
-  /// Finds the equilibrium, about which at() and spectrum() are; throws core::NotConverged where there is none.
-  void stand_at(double speed) { (void)walker_.at(speed); }
   /// Throws core::NotConverged where there is no equilibrium, and at an undamped resonance.
   [[nodiscard]] Response at(double speed);
   [[nodiscard]] SpectrumAt spectrum(double speed);

@@ -43,13 +43,14 @@ std::array<std::optional<Side>, 2> sides_of(const ResponseCurve& curve, std::siz
     std::size_t outer = top;
     while ((s == 0 ? outer > 0 : outer + 1 < curve.speed.size()) && value(outer) > level && value(outer) <= higher)
       s == 0 ? --outer : ++outer;
-    if (value(outer) > level) {
+    if (!(value(outer) <= level)) {
       if (reason && reason->empty())
         *reason =
             fmt::format("the response does not fall to 0.707 of the peak {} it before {}", s == 0 ? "below" : "above",
-                        value(outer) > higher ? "a higher peak rises"
-                        : s == 0              ? "the range begins"
-                                              : "the range ends");
+                        value(outer) > higher      ? "a higher peak rises"
+                        : std::isnan(value(outer)) ? "the answers end"
+                        : s == 0                   ? "the range begins"
+                                                   : "the range ends");
       continue;
     }
     const std::size_t inner = s == 0 ? outer + 1 : outer - 1;
@@ -92,6 +93,7 @@ std::vector<std::size_t> ResponseCurve::tops() const {
     const double enough = height[k] * (1 - height_tolerance);
     for (std::size_t i = k; to_the_left ? i-- > 0 : ++i < height.size();) {
       if (height[i] < enough) return true;
+      if (std::isnan(height[i])) return false;
       if (to_the_left ? height[i] >= height[k] : height[i] > height[k]) return false;
     }
     return false;

@@ -25,7 +25,8 @@ struct PeakErrors {
   double speed = unknown, height = unknown, factor = unknown;
 };
 
-/// Heights (semi-major axes, m) of one place over rising speeds (rad/s).
+/// Heights (semi-major axes, m) of one place over rising speeds (rad/s). Where one is not a number the curve ends, and
+/// begins anew behind it.
 struct ResponseCurve {
   std::vector<double> speed, height;
 

@@ -117,7 +117,6 @@ StudyResult UnbalanceResponse::run(Context& context) {
   LostSpeeds lost;
   const auto solve_at = [&](Responder& which, const std::vector<double>& speeds, const std::string& piece) {
     const auto compute = [&](std::size_t i) {
-      which.stand_at(speeds[i]);  // without an equilibrium the study ends
       auto packed = answer_or_reason([&] { return pack(which.at(speeds[i])); });
       results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
                                    deck::from_si(speeds[i], unit), unit, results.seconds()));
@@ -138,20 +137,30 @@ StudyResult UnbalanceResponse::run(Context& context) {
   const auto at_speeds = [&](const std::vector<double>& speeds) {
     return solve_at(machine, speeds, fmt::format("{} speed", ++calls));
   };
+  // The same for the curve: a speed without an equilibrium is a gap of it.
+  const auto rows_at = [&](const std::vector<double>& speeds) {
+    std::vector<Response> rows = at_speeds(speeds);
+    for (const double speed : speeds)
+      if (const auto at = lost.find(speed); at != lost.end() && at->second != solve::singular_at_frequency)
+        rows.push_back(Response::without_answer(speed, nodes.size(), names.size()));
+    return rows;
+  };
   std::vector<double> grid;
   for (int k = 0; k < options.points; ++k)
     grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
-  std::vector<Response> curve = at_speeds(grid);
-  if (curve.empty()) return results.finish(lost.begin()->second, false);
+  std::vector<Response> curve = rows_at(grid);
+  if (std::ranges::all_of(curve, [](const Response& r) { return std::isnan(r.largest); }))
+    return results.finish(lost.begin()->second, false);
 
   // Speeds added around the peaks of each place until the parabola of 1/f^2 settles the speed to 1e-5.
   const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
   std::sort(curve.begin(), curve.end(), by_speed);
   const auto add = [&](std::vector<double> speeds) {
     std::vector<double> known = speeds_of(curve);
-    for (const auto& [speed, why] : lost) known.insert(std::ranges::upper_bound(known, speed), speed);
+    for (const auto& [speed, why] : lost)
+      if (!std::ranges::binary_search(known, speed)) known.insert(std::ranges::upper_bound(known, speed), speed);
     speeds = worth_asking(std::move(speeds), known);
-    for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
+    for (Response& r : rows_at(speeds)) curve.push_back(std::move(r));
     std::sort(curve.begin(), curve.end(), by_speed);
     return !speeds.empty();
   };
@@ -185,6 +194,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   const auto look = [&](std::vector<double> speeds) {
     std::ranges::sort(speeds);
     speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+    for (const auto& [speed, why] : lost)
+      if (why != solve::singular_at_frequency) growing.try_emplace(speed, SpectrumAt{}.growing);
     std::erase_if(speeds, [&](double speed) { return growing.contains(speed); });
     const auto compute = [&](std::size_t i) { return pack(machine.spectrum(speeds[i])); };
     const auto found =
@@ -327,7 +338,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   double operating_rounding = 0;  // [m]
   const auto take_operating = [&] {
     const std::vector<Response> found = at_speeds({operating_speed->value});
-    if (found.empty() || stands_on_pole(found.front(), spectra, search, at_speeds))
+    if (found.empty()) throw core::NotConverged(lost.at(operating_speed->value));
+    if (stands_on_pole(found.front(), spectra, search, at_speeds))
       throw core::NotConverged(solve::singular_at_frequency);
     const Response& there = found.front();
     put_operating(names, nodes, there, summary);
@@ -347,7 +359,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       if (mesh.spacing != 1) other.emplace(context, layout, options, nodes, mesh);
                       if (operating_known) at.push_back(operating_speed->value);
                       std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
-                      if (all.size() < at.size()) throw core::NotConverged(solve::singular_at_frequency);
+                      if (all.size() < at.size()) throw core::NotConverged(lost.begin()->second);
                       MeshResponse out;
                       if (operating_known) {
                         put_operating(names, nodes, all.back(), out.operating);
