@@ -1,5 +1,9 @@
 #include "findings.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "whirl/core/petsc.hpp"
 #include "whirl/io/checkpoint.hpp"
 #include "whirl/study/stop.hpp"
@@ -54,6 +58,30 @@ void Findings::progress(const std::string& line) {
   if (now - last_line_ < std::chrono::milliseconds(100)) return;
   last_line_ = now;
   say_(line, true);
+}
+
+std::string Findings::left(double done) {
+  constexpr double window = 30, known_after = 3;
+  if (!say_) return "";
+  const double now = seconds();
+  if (pace_.empty() || now - pace_.back()[0] > 0.1) pace_.push_back({now, done});
+  while (pace_.size() > 2 && now - pace_.front()[0] > window) pace_.pop_front();
+  const double took = now - pace_.front()[0], went = done - pace_.front()[1];
+  return took < known_after || !(went > 0) ? "" : ", " + duration_in_words((1 - done) * took / went) + " left";
+}
+
+std::string Findings::left_over(double at, double from, double to, const std::string& unit) {
+  const double done = to == from ? 1 : (at - from) / (to - from);
+  return fmt::format(", {:.0f} % of {:.6g} to {:.6g} {}{}", 100 * std::clamp(done, 0.0, 1.0), from, to, unit,
+                     left(done));
+}
+
+std::string duration_in_words(double seconds) {
+  constexpr double minute = 60, hour = 3600, day = 86400, twice = 2;
+  if (seconds < twice * minute) return fmt::format("{:.0f} s", seconds);
+  if (seconds < twice * hour) return fmt::format("{:.0f} min", seconds / minute);
+  if (seconds < twice * day) return fmt::format("{:.0f} h", seconds / hour);
+  return fmt::format("{:.0f} days", seconds / day);
 }
 
 bool Findings::agreed(bool word) const {

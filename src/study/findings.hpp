@@ -3,7 +3,9 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -44,6 +46,11 @@ public:
   /// Replaces the progress line; rank 0 only, at most ten times a second.
   void progress(const std::string& line);
   [[nodiscard]] bool shows_progress() const { return static_cast<bool>(say_); }
+  /// ", 3 min left" at the pace of the last half minute, if the share `done` [1] of this study is done; for its
+  /// progress line. Empty before the pace is known, and without progress.
+  [[nodiscard]] std::string left(double done);
+  /// The same where a study runs over a parameter: ", 42 % of 1000 to 6000 rpm, 3 min left".
+  [[nodiscard]] std::string left_over(double at, double from, double to, const std::string& unit);
   /// The same at once, for the progress of a part of this study.
   void say(const std::string& line, bool transient) const {
     if (say_) say_(line, transient);
@@ -78,6 +85,10 @@ private:
   StudyResult result_;
   std::chrono::steady_clock::time_point started_, last_line_;
   double earlier_seconds_ = 0;
+  std::deque<std::array<double, 2>> pace_;  // seconds and what was done by then, of the last half minute
 };
+
+/// "95 s", "12 min", "5 h", "3 days".
+[[nodiscard]] std::string duration_in_words(double seconds);
 
 }  // namespace whirl::study

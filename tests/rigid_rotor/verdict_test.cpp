@@ -173,7 +173,16 @@ TEST(MinimumFilm, EndsCyclesMotionsAndRunUps) {
            "studies=[{run_up: {unbalance: [a], " + range + ", acceleration: 100 rad/s^2, start: {from: cycle}}}]"})
           .at(0);
   ASSERT_NE(down.status.find(reason), std::string::npos) << down.status;
-  EXPECT_NEAR(std::stod(down.status.substr(std::string("ended at ").size())), contact, 0.02 * contact);
+  const double end = std::stod(down.status.substr(std::string("ended at ").size()));
+  EXPECT_NEAR(end, contact, 0.02 * contact);
+  // Where in time, and how to go on; what was computed before is there, with the thinnest film of whole revolutions.
+  const double time = std::stod(down.status.substr(down.status.find("t = ") + 4));
+  EXPECT_NEAR(400 - 100 * time, end, 1e-3) << down.status;
+  EXPECT_TRUE(down.status.ends_with("With 'minimum_film: 0 um' the motion goes on until the surfaces touch"));
+  const auto least = test::values_of(down);
+  EXPECT_GT(least.at("bearing.left.thinnest_film"), 18.2e-6);
+  EXPECT_LT(least.at("bearing.left.thinnest_film"), 18.5e-6);
+  EXPECT_NEAR(least.at("bearing.left.thinnest_film.speed"), end, 0.01 * end);
   // A motion that begins with a film too thin delivers nothing but the reason.
   const auto words = [&](double speed) {
     return std::vector<std::string>{

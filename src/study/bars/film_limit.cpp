@@ -39,6 +39,12 @@ std::string FilmLimit::reason(const std::vector<double>& thickness) const {
   return fmt::format("film of bearing {} falls below {:.3g} um (minimum_film)", names_[at], limits_[at] * 1e6);
 }
 
+std::string FilmLimit::ends(const std::vector<double>& thickness) const {
+  return reason(thickness) + (limits_[worst(thickness)] > 0
+                                  ? ". With 'minimum_film: 0 um' the motion goes on until the surfaces touch"
+                                  : "");
+}
+
 std::string FilmLimit::thinnest(const std::vector<double>& thickness) const {
   if (limits_.empty() || thickness.empty()) return "";
   const std::size_t at = worst(thickness);

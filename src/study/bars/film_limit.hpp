@@ -30,6 +30,8 @@ public:
   [[nodiscard]] double margin(const std::vector<double>& thickness) const;
   /// "film of bearing B4 falls below 0.09 um (minimum_film)": of the place of the least margin.
   [[nodiscard]] std::string reason(const std::vector<double>& thickness) const;
+  /// The same of a motion that ends there, with how it could go on.
+  [[nodiscard]] std::string ends(const std::vector<double>& thickness) const;
   /// "; the film of bearing B4 is 0.2 um thick": of the same place, for what ended for another reason. Empty without
   /// films.
   [[nodiscard]] std::string thinnest(const std::vector<double>& thickness) const;

@@ -158,10 +158,11 @@ void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
     judge_multiplier({point.index, point.parameter, std::abs(point.stability.values[0]), cycle});
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
-  context_.results.progress(
-      fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
-                  context_.results.summary().name, point.index + 1, options_.parameter.path, point.parameter, unit_,
-                  point.step, point.newton_iterations, cycle.intervals(), mu, context_.results.seconds()));
+  context_.results.progress(fmt::format(
+      "{}: point {}, {} {:.2f} {}{}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
+      context_.results.summary().name, point.index + 1, options_.parameter.path, point.parameter, unit_,
+      context_.results.left_over(point.parameter, continuation_.from, continuation_.to, unit_), point.step,
+      point.newton_iterations, cycle.intervals(), mu, context_.results.seconds()));
 }
 
 // Cycles asked for at given parameters, solved there and not interpolated.

@@ -246,8 +246,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                   py,
                   film_column(seen.film_thickness, places.names.size())});
     results.progress(fmt::format(
-        "{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
-        results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
+        "{}: point {}, {} {:.2f} {}{}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
+        results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit,
+        results.left_over(point.parameter, continuation.from, continuation.to, unit), point.step,
         point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
   };
   std::function<std::unique_ptr<system::Plant>()> cut;

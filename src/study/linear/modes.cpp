@@ -103,8 +103,10 @@ StudyResult Modes::run(Context& context) {
       const auto found = shaft_modes(system, walker.at(list[i]), options.count, more, limit, here, options.condition);
       auto modes = pack(found, here);
       ready += static_cast<std::size_t>(layout.count);
-      results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
-                                   wanted, deck::from_si(list[i], unit), unit, results.seconds()));
+      results.progress(
+          fmt::format("{}: {} of {} speeds{}, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted), wanted,
+                      results.left(static_cast<double>(std::min(ready, wanted)) / static_cast<double>(wanted)),
+                      deck::from_si(list[i], unit), unit, results.seconds()));
       return modes;
     };
     const auto packed = distribute(layout, list.size(), compute, pieces,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/open_bore.hpp"
@@ -62,6 +63,8 @@ public:
     const int total = options_.discard + options_.revolutions;
     std::string status = "completed";
     try {
+      integrator_.state(start_.x.get());
+      margin_ = films_.margin(system_.observe(start_.x.get()).film_thickness);
       for (; done_ < total; ++done_) {
         if (tangents_ && done_ >= first_carried()) carried_ = &*tangents_;
         integrator_.carry(carried_);
@@ -92,6 +95,16 @@ private:
     return !forces_.constant(period() * options_.discard, period() * (options_.discard + options_.revolutions));
   }
 
+  // Ends the motion where a film becomes too thin: on a straight line between two samples.
+  void look_at_films(const std::vector<double>& thickness, int sample) {
+    const double margin = films_.margin(thickness), last = std::exchange(margin_, margin);
+    if (margin > 0) return;
+    const double missing = last > 0 && std::isfinite(last) ? margin / (margin - last) : 0,
+                 turned = (sample - missing) / options_.samples;
+    throw core::DomainError(fmt::format("at {:.4g} deg of it (t = {:.6g} s) {}", 360 * turned,
+                                        (done_ + turned) * period(), films_.ends(thickness)));
+  }
+
   void revolve(bool record) {
     std::vector<double> growth(tangents_ ? static_cast<std::size_t>(tangents_->count()) : 0, 0.0);
     for (int k = 1; k <= options_.samples; ++k) {
@@ -108,7 +121,7 @@ private:
       }
       integrator_.state(start_.x.get());
       const system::Observed seen = system_.observe(start_.x.get());
-      if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
+      look_at_films(seen.film_thickness, k);
       if (record) record_.sample(seen.shown, integrator_.scaled());
       if (!record && !forced_ && done_ >= options_.discard - std::max(1, options_.discard / 4)) watch_.see(seen.shown);
     }
@@ -137,11 +150,13 @@ private:
   // A revolution may take minutes: each step says where it ended.
   void progress(double time, double step) {
     if (!context_.results.shows_progress()) return;
-    const double turn = options_.speed.value * 180 / std::numbers::pi;
-    context_.results.progress(
-        fmt::format("{}: revolution {} of {}{}, {:.1f} deg, step {:.3g} deg, {:.1f} s", context_.results.summary().name,
-                    done_ + 1, options_.discard + options_.revolutions, done_ < options_.discard ? " (discarded)" : "",
-                    turn * (time - period() * turns_before()), turn * step, context_.results.seconds()));
+    const int total = options_.discard + options_.revolutions;
+    const double turn = options_.speed.value * 180 / std::numbers::pi,
+                 degrees = turn * (time - period() * turns_before());
+    context_.results.progress(fmt::format(
+        "{}: revolution {} of {}{}{}, {:.1f} deg, step {:.3g} deg, {:.1f} s", context_.results.summary().name,
+        done_ + 1, total, done_ < options_.discard ? " (discarded)" : "",
+        context_.results.left((done_ + degrees / 360) / total), degrees, turn * step, context_.results.seconds()));
   }
 
   void save() {
@@ -227,6 +242,7 @@ private:
   std::optional<Plane> plane_;
   std::optional<transient::Section> section_;
   FilmLimit films_;
+  double margin_ = 0;  // of the films at the last sample
   int done_ = 0;
   double last_saved_ = -1e9;
 };

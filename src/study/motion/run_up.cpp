@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/open_bore.hpp"
@@ -50,7 +52,8 @@ std::vector<io::Table::Column> columns(const std::string& unit, const std::vecto
       wide("y_max", "m", "largest y of the journal relative to the bearing centre", bearings),
       wide("y_min", "m", "smallest", bearings),
       wide("eccentricity_max", "1", "largest eccentricity per clearance; zero for a bearing without clearance",
-           bearings)};
+           bearings),
+      wide("film_min", "m", "thinnest film in this revolution; not a number where there is none", bearings)};
   if (!nodes.empty()) {
     const std::vector<std::string> names = io::node_labels(nodes);
     all.push_back(wide("node_amplitude", "m", "as `amplitude`, of the shaft's node", names));
@@ -90,6 +93,8 @@ public:
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     std::string status = "completed";
     try {
+      integrator_.state(x_.get());
+      margin_ = films_.margin(system_.observe(x_.get()).film_thickness);
       for (; done_ < total_; ++done_) {
         revolve();
         save();
@@ -107,12 +112,22 @@ private:
     return deck::from_si(drive_.speed_at(drive_.time_of(2 * std::numbers::pi * revolutions)), unit_);
   }
   [[nodiscard]] std::string ended(const std::string& why) const {
-    return fmt::format("ended at {:.6g} {}: {}", speed_at(done_), unit_, why);
+    const double time = thin_at_.value_or(integrator_.time());
+    return fmt::format("ended at {:.6g} {} (t = {:.6g} s): {}", deck::from_si(drive_.speed_at(time), unit_), unit_,
+                       time, why);
+  }
+  // Ends the run where a film becomes too thin: on a straight line between two samples.
+  void look_at_films(const std::vector<double>& thickness, double before, double now) {
+    const double margin = films_.margin(thickness), last = std::exchange(margin_, margin);
+    if (margin > 0) return;
+    thin_at_ = last > 0 && std::isfinite(last) ? before + (now - before) * last / (last - margin) : now;
+    throw core::DomainError(films_.ends(thickness));
   }
 
   void revolve() {
     Revolution r;
     const std::size_t n = places_.names.size();
+    std::vector<double> thinnest(n, std::numeric_limits<double>::quiet_NaN());
     r.samples.resize(n + options_.nodes.size());
     const auto at = [&](int k) {
       return drive_.time_of(2 * std::numbers::pi * (done_ + static_cast<double>(k) / options_.samples));
@@ -121,7 +136,9 @@ private:
       integrator_.advance(at(k), at(options_.samples));
       integrator_.state(x_.get());
       const system::Observed seen = system_.observe(x_.get());
-      if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
+      look_at_films(seen.film_thickness, at(k - 1), at(k));
+      const std::vector<double> films = film_column(seen.film_thickness, n);
+      for (std::size_t b = 0; b < n; ++b) thinnest[b] = std::fmin(thinnest[b], films[b]);
       for (std::size_t b = 0; b < n; ++b) {
         const auto& position = seen.shown[b].position;
         r.samples[b].push_back(position);
@@ -137,12 +154,18 @@ private:
     // Where a checkpoint may lie nothing is remembered but what it holds.
     integrator_.close_revolution(0);
     keep(r);
+    thinnest_.insert(thinnest_.end(), thinnest.begin(), thinnest.end());
     neighbours_.add(std::move(r));
     record(neighbours_.ready());
-    context_.results.progress(fmt::format("{}: revolution {} of {}, {:.1f} {}, step {:.3g} of a revolution, {:.1f} s",
-                                          context_.results.summary().name, done_ + 1, total_, speed_at(done_ + 1),
-                                          unit_, integrator_.step() * system_.speed() / (2 * std::numbers::pi),
-                                          context_.results.seconds()));
+    if (!context_.results.shows_progress()) return;
+    double film = std::numeric_limits<double>::quiet_NaN();
+    for (const double t : thinnest) film = std::fmin(film, t);
+    context_.results.progress(
+        fmt::format("{}: revolution {} of {}, {:.1f} {}{}{}, step {:.3g} of a revolution, {:.1f} s",
+                    context_.results.summary().name, done_ + 1, total_, speed_at(done_ + 1), unit_,
+                    context_.results.left(static_cast<double>(done_ + 1) / total_),
+                    std::isfinite(film) ? fmt::format(", film {:.3g} um", 1e6 * film) : "",
+                    integrator_.step() * system_.speed() / (2 * std::numbers::pi), context_.results.seconds()));
   }
 
   // Real part of the least damped vibration about the equilibrium at the start [1/s]: its free vibration fades from the
@@ -197,6 +220,8 @@ private:
                                          y_max,
                                          y_min,
                                          eccentricity};
+    const auto films = thinnest_.begin() + revolution * static_cast<std::ptrdiff_t>(n);
+    row.emplace_back(films, films + static_cast<std::ptrdiff_t>(n));
     if (!node.empty()) row.insert(row.end(), {node, node_x, node_y});
     table_.append(row);
   }
@@ -231,6 +256,7 @@ private:
     state.put("neighbours", neighbours_.flat(), "m",
               "samples of the last revolutions [revolution][place][sample][x, y]");
     state.set("first_neighbour", neighbours_.first());
+    state.put("thinnest", thinnest_, "m", "films [revolution][bearing]");
     state.put("bores", bores_.kept(), "1", "farthest places outside open bores and where [bearing][distance, speed]");
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
@@ -247,6 +273,7 @@ private:
     integrator_.restart(state.real("time"), state.real("step"));
     table_.read(state.group("run_up"));
     kept_ = state.reals("kept");
+    thinnest_ = state.reals("thinnest");
     bores_.go_on(state.reals("bores"));
     neighbours_.set(state.integer("first_neighbour"), state.reals("neighbours"),
                     places_.names.size() + options_.nodes.size(), static_cast<std::size_t>(options_.samples));
@@ -293,6 +320,20 @@ private:
     }
   }
 
+  void put_thinnest(io::StudySummary& summary) const {
+    const auto& films = table_.column("film_min");
+    const std::size_t n = places_.names.size();
+    for (std::size_t b = 0; b < n; ++b) {
+      std::size_t best = 0;
+      for (std::size_t k = 0; k < table_.rows(); ++k)
+        if (!(films[k * n + b] >= films[best * n + b])) best = k;
+      if (!std::isfinite(films[best * n + b])) continue;
+      const std::string head = "bearing." + places_.names[b] + ".thinnest_film";
+      summary.set(head, films[best * n + b], "m");
+      summary.set(head + ".speed", table_.column("speed")[best], unit_);
+    }
+  }
+
   StudyResult report(const std::string& status) {
     auto& results = context_.results;
     auto& summary = results.summary();
@@ -310,6 +351,7 @@ private:
       for (const auto& name : places_.names) bearings.push_back("bearing." + name);
       for (const int node : options_.nodes) nodes.push_back(fmt::format("node.{}", node));
       put_peaks(summary, "amplitude", bearings);
+      put_thinnest(summary);
       if (!nodes.empty()) put_peaks(summary, "node_amplitude", nodes);
     }
     bores_.warn(summary, unit_);
@@ -341,6 +383,9 @@ private:
   std::vector<double> kept_;  // [sample][place and node][x, y]
   Neighbours neighbours_;
   double slowest_ = 0;
+  std::vector<double> thinnest_;  // [revolution][place]; not a number without a film
+  double margin_ = 0;             // of the films at the last sample
+  std::optional<double> thin_at_;
   int total_ = 0, done_ = 0;
   double last_saved_ = -1e9;
 };
@@ -367,9 +412,16 @@ io::Brief RunUp::brief(const StudyResult& result, std::span<const io::StudySumma
                        "the start is left out"};
   for (const std::string& p : places) table.rows.push_back({name(p), peak(p), v[p + ".peak.speed"]});
   const bool up = options.range.to > options.range.from;
-  return {{fmt::format("The largest vibration on the way {} is {} 0-peak at {}, reached at {}.", up ? "up" : "down",
-                       io::reading(peak(*top)), name(*top), io::reading(v[*top + ".peak.speed"]))},
-          {std::move(table)}};
+  std::vector<std::string> sentences{
+      fmt::format("The largest vibration on the way {} is {} 0-peak at {}, reached at {}.", up ? "up" : "down",
+                  io::reading(peak(*top)), name(*top), io::reading(v[*top + ".peak.speed"]))};
+  const std::vector<std::string> films = v.between("bearing.", ".thinnest_film");
+  const auto film = [&](const std::string& bearing) { return v["bearing." + bearing + ".thinnest_film"]; };
+  if (const auto least = std::ranges::min_element(films, {}, [&](const auto& b) { return film(b).value; });
+      least != films.end())
+    sentences.push_back(fmt::format("The thinnest film is {}, in {} at {}.", io::reading(film(*least)), *least,
+                                    io::reading(v["bearing." + *least + ".thinnest_film.speed"])));
+  return {std::move(sentences), {std::move(table)}};
 }
 
 }  // namespace whirl::study
