@@ -1,4 +1,4 @@
-# Files of a room compiled twelve at a time: their headers are read, and the templates of Eigen instantiated, once for all of them.
+# Files of a room compiled twelve at a time, those of cold rooms 24: their headers are read, and the templates of Eigen instantiated, once for all of them.
 # A whole build takes three fifths of the time; the change of one file takes more. To work on a room, configure with -DWHIRL_UNITY=OFF.
 # That shows also whether a file lacks an #include, and names that hide names of its own file.
 # CMake's own UNITY_BUILD writes absolute paths, with which ccache finds nothing in another clone.
@@ -6,10 +6,10 @@ set(several_as_one OFF)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release")
   set(several_as_one ON)
 endif()
-option(WHIRL_UNITY "compile twelve files of a room as one" ${several_as_one})
+option(WHIRL_UNITY "compile many files of a room as one" ${several_as_one})
 
-# whirl_batches(VARIABLE NAME FILES...): what to compile for FILES below src, which may stand in one file together.
-function(whirl_batches variable name)
+# whirl_batches(VARIABLE NAME SIZE FILES...): what to compile for FILES below src, of which SIZE may stand in one file together.
+function(whirl_batches variable name size)
   set(files ${ARGN})
   list(LENGTH files left)
   if(NOT WHIRL_UNITY OR left LESS 2)
@@ -20,7 +20,7 @@ function(whirl_batches variable name)
   set(batch 0)
   set(batches)
   while(files)
-    list(SUBLIST files 0 12 together)
+    list(SUBLIST files 0 ${size} together)
     list(REMOVE_ITEM files ${together})
     set(text)
     foreach(file ${together})

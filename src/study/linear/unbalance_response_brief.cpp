@@ -18,7 +18,7 @@ namespace {
 bool at_node(const io::PeakEntry& p) {
   return p.place.starts_with("node ");
 }
-bool is_undamped(const io::PeakEntry& p) {
+bool has_no_limit(const io::PeakEntry& p) {
   return p.stability == "undamped";
 }
 
@@ -34,7 +34,7 @@ bool is_answer(const io::PeakEntry& p) {
 std::string mark_of(const io::PeakEntry& p) {
   std::vector<std::string> marks;
   if (!p.stability.empty() && p.stability != "stable")
-    marks.emplace_back(p.stability == "unstable" ? "UNSTABLE" : is_undamped(p) ? p.stability : "stability?");
+    marks.emplace_back(p.stability == "unstable" ? "UNSTABLE" : has_no_limit(p) ? p.stability : "stability?");
   const bool moves = p.stability != "unstable";
   if (moves && p.verdict.starts_with("damped"))
     marks.emplace_back("damped");
@@ -48,7 +48,7 @@ std::string mark_of(const io::PeakEntry& p) {
 // An undamped peak grows without limit; of one that is too narrow nothing is known.
 io::BriefCell unless_narrow(const io::PeakEntry& p, const io::Quantity& q) {
   if (!std::isinf(q.value)) return q;
-  return is_undamped(p) ? io::BriefCell("without limit") : io::BriefCell();
+  return has_no_limit(p) ? io::BriefCell("without limit") : io::BriefCell();
 }
 
 // Peaks by place and falling height; what their notes say stands below, each once with the numbers of its peaks.
@@ -103,7 +103,7 @@ std::vector<std::string> of_peaks(const std::vector<io::PeakEntry>& peaks, const
   std::ranges::copy_if(peaks, std::back_inserter(known), at_node);
   if (known.empty()) known = peaks;
   std::vector<std::string> out;
-  const auto endless = std::ranges::find_if(known, is_undamped);
+  const auto endless = std::ranges::find_if(known, has_no_limit);
   if (endless != known.end())
     out.push_back(fmt::format("undamped peak at {}, {}: the amplitude grows without limit there", endless->place,
                               io::reading(endless->speed)));
