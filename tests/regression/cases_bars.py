@@ -154,6 +154,16 @@ h.true(f"it has no bar: {q['uncertainty']}", q["uncertainty"] is None)
 said = " ".join(w for w in touch["warnings"] if "says nothing about the machine" in w)
 h.true("and says why, with the places on other meshes", "has no limit" in said and "182" in said and "136" in said, str(touch["warnings"]))
 
+# One eigenvalue, one bar: a mode at a speed just below its critical speed and the critical speed itself, the former at a speed with
+# other meshes, the latter between two of these.
+beside = 4023.184 * 0.9995
+s = run("friswell_596.yaml", "one_bar", "studies=[{modes: {name: m, range: {from: 1000 rpm, to: 6000 rpm}, points: 4, count: 8}}]",
+        f"service_speed={beside} rpm")["m"]
+mode, here = value(s, "critical.3.mode"), s["values"]["critical.3.log_decrement"]["uncertainty"]
+there = [m["log_decrement_uncertainty"] for m in s["modes"] if abs(m["speed"] - beside) < 1e-6 * beside and m["mode"] == mode]
+h.true("the mode is listed there", len(there) == 1, str(there))
+h.close("bar of the log decrement of mode and critical speed", here, there[0], 0.01 * there[0])
+
 # Tolerances looser than those that bars stand on are refused: a Hopf point 9.8 rad/s off with a bar of 4e-5.
 for option in (["-newton_snes_atol", "1e10"], ["-newton_snes_rtol", "1e-3"], ["-newton_snes_convergence_test", "skip"]):
     done = subprocess.run([h.program, "run", str(CASES / "time_mesh.yaml"), "-o", str(h.work / "loose"), "--", *option], capture_output=True, text=True)
