@@ -206,9 +206,9 @@ def flushed(h):
 def without_equilibrium(h, mpirun):
     """A liner that touches at low speeds: these have no response, the others keep theirs, on one and on two ranks."""
     deck, words = h.source / "inputs/compliant_rotor/short.yaml", ["bearings.half.film.compliance=0.05", "bearings.half.film.differences=upwind", "rotor.load=30 N"]
-    response = "studies=[{{unbalance_response: {{name: r, unbalance: [a], range: {{from: {}, to: 1000 rad/s}}, points: {}}}}}]"
+    response = "studies=[{{unbalance_response: {{name: r, unbalance: [a], range: {{from: {}, to: 1000 rad/s}}, points: {}, refine: false}}}}]"
     columns = {}
-    for name, start, points, launcher in (("lost", "20 rad/s", 6, []), ("lost_2", "20 rad/s", 6, [*mpirun, "-n", "2"]), ("kept", "216 rad/s", 5, [])):
+    for name, start, points, launcher in (("lost", "20 rad/s", 3, []), ("lost_2", "20 rad/s", 3, [*mpirun, "-n", "2"]), ("kept", "510 rad/s", 2, [])):
         s = h.run(deck, name, [*words, response.format(start, points)], launcher=launcher)["r"]
         with h5py.File(h.work / name / "results.h5") as f:
             columns[name] = [f[f"studies/r/response/{k}"][:].reshape(-1) for k in ("speed", "semi_major")]
@@ -218,9 +218,9 @@ def without_equilibrium(h, mpirun):
         gone = np.isnan(size)
         h.true(f"{name}: the lowest speed has no response", gone[0] and not gone[speed > 210].any(), str(speed[gone]))
         h.true(f"{name}: with the reason", warned(s, "no response at 20 rad/s", "equilibrium"), str(s.get("warnings")))
-        h.true(f"{name}: counted in the status", s["status"] == f"{gone.sum()} of 6 speeds have no response", s["status"])
-    at = lambda name: columns[name][1][np.isclose(columns[name][0], 216)][0]
-    h.close("the same at 216 rad/s [m]", at("lost"), at("kept"), 1e-8 * at("kept"))
+        h.true(f"{name}: counted in the status", s["status"] == f"{gone.sum()} of 3 speeds have no response", s["status"])
+    at = lambda name: columns[name][1][np.isclose(columns[name][0], 510)][0]
+    h.close("the same at 510 rad/s [m]", at("lost"), at("kept"), 1e-8 * at("kept"))
     h.true("and on two ranks", np.allclose(columns["lost"][1], columns["lost_2"][1], rtol=1e-6, equal_nan=True))
 
 
