@@ -15,7 +15,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/whirl ${PROJECT_SOURCE_DIR}/scri
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/install/METADATA
      CONTENT "Metadata-Version: 2.1\nName: whirl\nVersion: @PROJECT_VERSION@\nSummary: @PROJECT_DESCRIPTION@\n" @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/install/METADATA DESTINATION ${WHIRL_PYTHON_DIR}/whirl-${PROJECT_VERSION}.dist-info)
-foreach(WHIRL_COMMAND plot report)
+foreach(WHIRL_COMMAND plot report scene)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/install/whirl-${WHIRL_COMMAND} @ONLY CONTENT [[
 #!/usr/bin/python3
 import pathlib

@@ -1,4 +1,4 @@
-"""The commands whirl-plot and whirl-report of an installed Whirl."""
+"""The commands whirl-plot, whirl-report and whirl-scene of an installed Whirl."""
 import sys
 
 
@@ -9,4 +9,9 @@ def plot():
 
 def report():
     from .report import main
+    sys.exit(main(sys.argv[1:]))
+
+
+def scene():
+    from .scene import main
     sys.exit(main(sys.argv[1:]))

@@ -59,7 +59,7 @@ print(round(run.values("response")["unbalance.disc.mass"].value, 2))
     done = run("whirl-plot", "out", "--formats", "png")
     check("whirl-plot", done.returncode == 0 and (work / "out/response.response.png").is_file(), done.stderr)
 
-    for command in ("whirl-plot", "whirl-report"):
+    for command in ("whirl-plot", "whirl-report", "whirl-scene"):
         done = run(command, "--help")
         check(f"{command} --help", f"usage: {command} " in done.stdout + done.stderr, done.stdout + done.stderr)
 

@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Scenes for ParaView: what XDMF names is there, shafts are solids of their radius about a centre that turns, bores keep their places."""
+import contextlib
+import io
+import pathlib
+import sys
+import tempfile
+import xml.etree.ElementTree as xml
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import command  # noqa: E402, F401  finds the modules
+import synthetic  # noqa: E402
+from whirl_plot import scene  # noqa: E402
+from whirl_plot.subject import Drawn  # noqa: E402
+
+
+def check(what, holds, found=""):
+    assert holds, f"{what}: {found}"
+
+
+def loaded(item, folder):
+    """The numbers behind a DataItem, of the shape and precision that it states."""
+    file, name = item.text.split(":", 1)
+    with h5py.File(folder / file) as data:
+        assert data[name].shape == tuple(map(int, item.get("Dimensions").split())), item.text
+        assert data[name].dtype.itemsize == int(item.get("Precision")), item.text
+        return data[name][...]
+
+
+def blocks_of(path):
+    """Name of each block: [(time, corners)]."""
+    found = {}
+    for block in xml.parse(path).getroot().find("Domain/Grid"):
+        steps = []
+        for grid in block:
+            corners = loaded(grid.find("Geometry/DataItem"), path.parent)
+            assert corners.shape[:-1] == tuple(map(int, grid.find("Topology").get("Dimensions").split()))
+            for field in grid.iter("Attribute"):
+                assert loaded(field.find("DataItem"), path.parent).shape == corners.shape[:-1], field.get("Name")
+            steps.append((float(grid.find("Time").get("Value")), corners))
+        found[block.get("Name")] = steps
+    return found
+
+
+def results_in(folder):
+    with h5py.File(folder / "results.h5", "w") as root:
+        g = synthetic.study(root, "at service speed", "static")
+        z = np.linspace(0, 2, 5)
+        synthetic.put(g.create_group("nodes"), z=z, y=-1e-4 * np.sin(np.pi * z / 2), x=np.zeros(5))
+        theta, axial = np.radians(np.linspace(-160, -20, 7)), np.linspace(-0.1, 0.1, 3)
+        around = np.stack([0.05 * np.cos(theta)[:, None] + 0 * axial, 0.05 * np.sin(theta)[:, None] + 0 * axial, 0.5 + 0 * theta[:, None] + axial], axis=-1)
+        synthetic.put(g.create_group("films/A & B/pad1"), theta=theta, z=axial, pressure=np.ones((7, 3)), node_xyz=around)
+        m = synthetic.study(root, "mode shapes", "modes")
+        bend = np.sin(np.pi * z / 2)
+        synthetic.put(m.create_group("shapes"), z=z, speed=[100.0], mode=[1], frequency=[50.0], whirl=["forward"], log_decrement=[0.1],
+                      x_real=[bend], x_imag=[0 * z], y_real=[0 * z], y_imag=[-bend])
+    (folder / "resolved.yaml").write_text("rotor: {segments: [{length: 1 m, outer_mass_diameter: 0.2 m}, {length: 1 m, outer_mass_diameter: 0.1 m}]}\n")
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    results_in(folder)
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        check("the command", scene.main([name, "--phases", "8", "--reach", "0.1"]) == 0)
+    files = [pathlib.Path(line) for line in out.getvalue().split("\n") if line]
+    check("files", [f.name for f in files] == ["at service speed.scene.xdmf", "at service speed.scene.h5", "mode shapes.scene.xdmf", "mode shapes.scene.h5"], files)
+
+    (title, steps), = blocks_of(files[2]).items()
+    check("name of a mode", title.startswith("mode 1 at speed 100 rad/s: 50"), title)
+    check("a whole turn", np.allclose([time for time, _ in steps], np.arange(9) / 8))
+    centres = np.array([corners[0, 0] for _, corners in steps])
+    middle = np.argmin(np.abs(centres[0, :, 2] - 1.0))
+    check("a forward mode turns from x to y by a circle of the reach", np.allclose(np.hypot(centres[:, middle, 0], centres[:, middle, 1]), 0.2, rtol=1e-5)
+                  and np.allclose(np.diff(np.unwrap(np.arctan2(centres[:, middle, 1], centres[:, middle, 0]))), np.pi / 4, rtol=1e-5), centres[:, middle])
+    radii = [np.hypot(*(corners[1] - corners[0])[..., :2].transpose(2, 0, 1)) for _, corners in steps]
+    ends = np.array([0.1, 0.1, 0.05, 0.05])
+    check("a solid of revolution of the deck's radii", all(np.allclose(r, ends[None, :], rtol=1e-5) for r in radii), radii[0])
+
+    static = blocks_of(files[0])
+    check("sag and bores in one file", list(static) == ["sag, drawn 2e+03 times", "A & B pad1"], list(static))
+    sag = static["sag, drawn 2e+03 times"][0][1][0, 0]
+    check("the sag reaches down a tenth of the length", np.isclose(sag[:, 1].min(), -0.2, rtol=1e-5))
+    check("a bore keeps its place", np.allclose(np.hypot(*static["A & B pad1"][0][1][..., :2].transpose(2, 0, 1)), 0.05))
+
+    with h5py.File(folder / "results.h5", "w") as root:
+        synthetic.study(root, "empty", "motion")
+    with contextlib.redirect_stderr(io.StringIO()) as err:
+        check("nothing to show is said", scene.main([name]) == 1 and "sag or mode shapes" in err.getvalue(), err.getvalue())
+
+print("the scenes hold the shafts")
