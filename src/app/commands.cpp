@@ -79,7 +79,8 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
   const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
   std::vector<std::string> files;
   for (const auto& s : deck.studies)
-    for (const char* kind : {io::Checkpoint::ending, ".xdmf"}) files.push_back(io::safe_name(s->name()) + kind);
+    for (const char* kind : {io::Checkpoint::ending, ".xdmf", ".unwrapped.xdmf"})
+      files.push_back(io::safe_name(s->name()) + kind);
   Directory held(comm, directory, study::resolved_text(deck), earlier, files);
   study::RunOptions options{directory, WHIRL_VERSION, {}, {}, request.resume};
   std::size_t ended = 0;

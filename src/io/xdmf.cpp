@@ -103,10 +103,10 @@ std::vector<StructuredGrid> film_grids(Group& pad, const std::string& path, cons
   pad.put("node_flat", {triples, std::move(flat), "m",
                         "unwrapped: radius times theta, z from the bearing's middle, zero [theta][z][3]", share});
 
-  StructuredGrid unwrapped = wrapped;
-  unwrapped.name += " unwrapped";
-  unwrapped.coordinates = path + "/node_flat";
-  return {std::move(wrapped), std::move(unwrapped)};
+  StructuredGrid unrolled = wrapped;
+  unrolled.name += unwrapped;
+  unrolled.coordinates = path + "/node_flat";
+  return {std::move(wrapped), std::move(unrolled)};
 }
 
 StructuredGrid cell_grid(Group& body, const std::string& path, const std::string& name, const std::string& corners,

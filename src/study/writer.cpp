@@ -99,7 +99,16 @@ void Writer::add(StudyResult result) {
   // The study counts as finished as soon as the files of the run are written: what belongs to it goes first.
   core::agree(comm_, [&] {
     if (rank_ != 0) return;
-    if (!result.grids.empty()) io::write_xdmf(this->file(file + ".xdmf"), "results.h5", result.grids);
+    // Films unwrapped lie across the machine: they are a scene of their own.
+    std::vector<io::StructuredGrid>& round = result.grids;
+    std::vector<io::StructuredGrid> flat;
+    std::erase_if(round, [&](io::StructuredGrid& g) {
+      const bool unwrapped = g.name.ends_with(io::unwrapped);
+      if (unwrapped) flat.push_back(std::move(g));
+      return unwrapped;
+    });
+    if (!round.empty()) io::write_xdmf(this->file(file + ".xdmf"), "results.h5", round);
+    if (!flat.empty()) io::write_xdmf(this->file(file + ".unwrapped.xdmf"), "results.h5", flat);
     io::each_csv_table(root_.group("studies").group(file), [&](const io::CsvFile& table) {
       io::write_csv(this->file("csv/" + io::plain_name(name) + "/" + table.file), table);
     });

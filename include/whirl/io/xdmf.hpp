@@ -5,11 +5,15 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "whirl/io/record.hpp"
 
 namespace whirl::io {
+
+/// How the names of grids of films end that are unrolled onto a plane.
+inline constexpr std::string_view unwrapped = " unwrapped";
 
 /// A structured mesh of n0 x n1 (x n2) nodes whose fields are datasets of that shape, or, where they belong to its
 /// cells, of one less in each extent.
