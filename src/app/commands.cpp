@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cells.hpp"
 #include "directory.hpp"
 #include "outcome.hpp"
 #include "whirl/core/agree.hpp"
