@@ -231,7 +231,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 
 std::string did_you_mean_one_of(std::string_view word, const std::vector<std::string>& names) {
   if (names.empty()) return "; there is none";
-  const std::string hint = did_you_mean(word, names);
+  std::string hint = did_you_mean(word, names);
   if (!hint.empty()) return hint;
   constexpr std::size_t most = 10;
   const std::size_t n = std::min(most, names.size());

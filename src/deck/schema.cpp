@@ -23,7 +23,7 @@ Node either_schema(Node a, Node b) {
   return n;
 }
 
-std::string with_bounds(std::string words, const Check& check) {
+std::string with_bounds(const std::string& words, const Check& check) {
   const std::string bounds = check.text();
   return bounds.empty() ? words : words + ", " + bounds;
 }

@@ -14,6 +14,6 @@ namespace whirl::deck {
 /// {"anyOf": [a, b]}
 [[nodiscard]] Node either_schema(Node a, Node b);
 /// `words, bounds`
-[[nodiscard]] std::string with_bounds(std::string words, const Check& check);
+[[nodiscard]] std::string with_bounds(const std::string& words, const Check& check);
 
 }  // namespace whirl::deck

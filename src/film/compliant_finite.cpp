@@ -261,7 +261,8 @@ void FiniteFilm::by_journal(int i, int line, StateResponse& response) {
   const auto [c, s] = normal(line);
   const auto [cf, sf] = normal(line + 1);
   // Of the P that `by` moves with the journal.
-  const auto through = [&](const std::vector<double>& by, PortColumns& to) {
+  const auto through = [&, c = c, s = s, cb = cb, sb = sb, cf = cf, sf = sf](const std::vector<double>& by,
+                                                                             PortColumns& to) {
     const double *here = &by[x], *pb = here - stride, *pf = here + stride;
     double* __restrict to_x = to[0].data() + begin, * __restrict to_y = to[1].data() + begin;
     for (int j = 0; j < n; ++j) {

@@ -15,7 +15,7 @@ GasInverse::GasInverse(MPI_Comm comm, int lines, int line, const Share& share, s
       nodes_(std::move(nodes)),
       ring_(comm, lines, line, Lines{begin_ / line, (begin_ + held_) / line}) {
   std::ranges::sort(nodes_);
-  nodes_.erase(std::ranges::unique(nodes_).begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   reads_ = Eigen::MatrixXd::Zero(unknowns, static_cast<Index>(nodes_.size()));
   fed_ = Eigen::MatrixXd::Zero(held_, unknowns);
   const int all = lines * line;

@@ -362,7 +362,8 @@ Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm, const std::str
 
 void leave_in_file(Group& group, const std::filesystem::path& file, const std::string& place) {
   Group empty;
-  for (const auto& [name, value] : group.attributes()) std::visit([&](const auto& v) { empty.set(name, v); }, value);
+  for (const auto& [name, value] : group.attributes())
+    std::visit([&, &name = name](const auto& v) { empty.set(name, v); }, value);
   empty.set(left_file, file.string());
   empty.set(left_place, place);
   group = std::move(empty);
@@ -382,7 +383,8 @@ Group with_contents(const Group& group) {
     const GroupId g(H5Gopen2(file, place.c_str(), H5P_DEFAULT));
     Group out = read_group(g, nullptr);
     for (const auto& [name, value] : group.attributes())
-      if (name != left_file && name != left_place) std::visit([&](const auto& v) { out.set(name, v); }, value);
+      if (name != left_file && name != left_place)
+        std::visit([&, &name = name](const auto& v) { out.set(name, v); }, value);
     return out;
   } catch (const core::Error& e) {
     throw core::Error("cannot read " + place + " of " + path + ": " + e.what());

@@ -81,7 +81,7 @@ Json to_json(const CodimensionTwo& c) {
 
 CodimensionTwo codimension_two(Json j) {
   const auto take = [&j](const char* key) {
-    const Json value = j.at(key);
+    Json value = j.at(key);
     j.erase(key);
     return value;
   };

@@ -187,7 +187,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   if (dense) {
     check(EPSSetType(eps.get(), EPSLAPACK));
   } else {
-    if (options.inverse) shell.emplace(*options.inverse, core::Gate(comm));
+    if (options.inverse) shell.emplace(InverseShell{*options.inverse, core::Gate(comm)});
     search_near(eps.get(), a.get(), options.target, std::min<PetscInt>(options.count, system.size() - 2),
                 shell ? &*shell : nullptr);
   }

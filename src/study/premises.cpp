@@ -42,7 +42,7 @@ std::vector<std::string> table_warnings(const system::Machine& machine, const St
   const std::string asked =
       *least == *most ? "the speed " + both(*least) : fmt::format("speeds from {} to {}", both(*least), both(*most));
   std::vector<std::string> lines;
-  const auto known = [&](const std::string& what, double from, double to, bool holds) {
+  const auto known = [&, least = least, most = most](const std::string& what, double from, double to, bool holds) {
     const double rounding = 1e-9 * to;
     if (*least >= from - rounding && *most <= to + rounding) return;
     lines.push_back(fmt::format("'{}' asks for {}{}, and the table of {} goes from {} to {}: beyond it {}",

@@ -153,7 +153,7 @@ void FilmPart::add(Entries& j, bool values, double alpha, double sigma) const {
   const PetscInt count = rows();
   for (std::size_t port = 0; port < ports_.size(); ++port)
     for (const auto& [q, side] : ports_[port]) {
-      const auto column = [&](const film::PortColumns& from, PetscInt unknown) {
+      const auto column = [&, side = side](const film::PortColumns& from, PetscInt unknown) {
         for (PetscInt k = 0; k < count; ++k)
           j.add(begin + k, unknown, values ? alpha * side * from[port][static_cast<std::size_t>(k)] : 0.0);
       };

@@ -135,7 +135,6 @@ private:
   core::Matrix jacobian_, assembled_;
   core::Vector rise_, residual_;
   core::NonlinearSolver snes_;
-  int sweeps_option_ = 0;
 };
 
 }  // namespace whirl::thermal
