@@ -213,7 +213,6 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     if (core::rank_of(system.comm()) != 0) return;
     std::optional<DensePencil> pencil;
     if (options.rounding || options.left) pencil.emplace(entries(a.get()), entries(b.get()));
-    // Before b is overwritten.
     const double infinite = infinite_from(a.get(), b.get());
     const PetscInt at_least = zero_rows(entries(b.get()));
     solve_dense(eps, a.get(), b.get());

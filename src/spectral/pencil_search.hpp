@@ -39,7 +39,7 @@ struct Pair {
 /// Rank 0's list for all ranks.
 void share(MPI_Comm comm, std::vector<Complex>& values);
 
-/// All eigenvalues of a u = lambda b u on this rank. `b` may be overwritten, and `eps` made anew.
+/// All eigenvalues of a u = lambda b u on this rank, in no order. `eps`, which holds the pencil, may be made anew.
 void solve_dense(EigenSolver& eps, Mat a, Mat b);
 
 /// A ShiftInverse as the preconditioner of a KSP.

@@ -124,13 +124,16 @@ DensePencil::Doubt DensePencil::doubt() const {
     // Rows of very different size make that bound far too large. What the eigenvalue moves by to first order, y^T (A -
     // lambda B) x with y^T B x = 1 (Stewart and Sun 1990, Matrix Perturbation Theory, ch. VI), has errors of each row
     // by itself.
-    if (asked(values_[k]) && !near[k] && left.size() > 0) {
+    double by_rows = moved;
+    if (left.size() > 0) {
       const double step = std::abs((left.row(column) * (of_a.col(column) - values_[k] * of_b.col(column)))(0)),
                    blur = eps * left.row(column).cwiseAbs().dot(
                                     (sums_a.col(column) + std::abs(values_[k]) * sums_b.col(column)).transpose());
-      if (std::isfinite(step + blur)) out[k] = std::min(out[k], safety * (step + blur));
+      if (std::isfinite(step + blur)) by_rows = std::min(moved, safety * (step + blur));
     }
-    if (near[k]) doubt.blur[k] = std::min(moved, nearest_part * std::abs(values_[k]));
+    if (asked(values_[k]) && !near[k]) out[k] = by_rows;
+    // Of a double eigenvalue each of the two is moved to first order by what parts them.
+    if (near[k]) doubt.blur[k] = std::min(by_rows, nearest_part * std::abs(values_[k]));
   }
   // The QZ algorithm is backward stable for the norm of the pencil, not row by row: with stiff springs on light masses
   // it returns growing eigenvalues that a step of Newton's method moves by about as much as they grow. Their sign means

@@ -25,8 +25,9 @@ public:
   /// step of Newton's method moves it by. Source: Stewart and Sun (1990), Matrix Perturbation Theory, sec. VI.2;
   /// Frobenius norms.
   ///
-  /// The same bound for eigenvalues that vibrate and have another one within 1e-5 of their size, whatever their real
-  /// parts: by as much rounding may part a double one. Zero for all others.
+  /// `blur` for eigenvalues that vibrate and have another one within 1e-5 of their size, whatever their real parts: by
+  /// as much rounding may part a double one. It is ten times |y* (A x - lambda B x)| + eps |y| (|A| + |lambda| |B|)
+  /// |x|, row by row, and at most the bound above. Zero for all others.
   struct Doubt {
     std::vector<double> rounding, blur;
   };
