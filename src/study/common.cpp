@@ -61,6 +61,26 @@ std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, con
   return out;
 }
 
+namespace {
+
+// One more step where Newton's method has ended just below its tolerance: damping that is a thousandth of the frequency
+// has lost as many digits more than the equilibrium. Error bars do not show it, as every mesh follows the same path.
+void polish(system::Plant& system, Vec x, solve::NewtonOptions options, solve::NewtonResult& result) {
+  constexpr double enough = 1e-13;
+  if (!result.converged || result.residual <= enough) return;
+  const core::Vector before = core::duplicate(x);
+  check(VecCopy(x, before.get()));
+  options.tolerance = enough;
+  options.max_iterations = 1;
+  const double residual = solve::find_equilibrium(system, x, options).residual;
+  if (residual < result.residual)
+    result.residual = residual;
+  else
+    check(VecCopy(before.get(), x));
+}
+
+}  // namespace
+
 solve::NewtonResult find_rest(system::Plant& system, Vec x) {
   solve::NewtonOptions options;
   options.max_iterations = 30;
@@ -77,6 +97,7 @@ solve::NewtonResult find_rest(system::Plant& system, Vec x) {
     options.searches = false;
     result = solve::find_equilibrium(system, x, options);
   }
+  polish(system, x, options, result);
   system.set_forcing(true);
   return result;
 }
