@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "service_speeds.hpp"
+#include "study/bars/unresolved.hpp"
 #include "whirl/study/linear/separation.hpp"
 
 namespace whirl::study {
@@ -163,6 +164,7 @@ private:
   static std::vector<ModesAt> modes_by_speed(const StudySummary& s) {
     std::map<double, ModesAt> by;
     for (const io::ModeEntry& m : s.modes) {
+      if (m.stability == not_resolved) continue;
       const double speed = deck::number_to_si(m.speed, m.speed_unit);
       ModesAt& at = by[speed];
       at.speed = speed;

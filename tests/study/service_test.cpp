@@ -265,6 +265,13 @@ TEST(Service, TheVerdictOfModesIsThatOfTheirWords) {
   EXPECT_EQ(verdict_at(1100, {modes_with({"stable", "undetermined"})}), "undetermined");
   EXPECT_EQ(verdict_at(1100, {modes_with({"stable", "undamped"})}), "undamped");
   EXPECT_NE(verdict_at(1200, {modes_with({"stable", "stable"})}).find("not known"), std::string::npos);
+  // A vibration of the elements has no say, and its decrement is none of the machine.
+  io::StudySummary elements = modes_with({"stable"});
+  elements.modes.push_back(elements.modes.back());
+  elements.modes.back().stability = "not resolved";
+  elements.modes.back().log_decrement = -1.5e-9;
+  EXPECT_EQ(verdict_at(1000, {elements}), "stable");
+  EXPECT_NEAR(fact(at(1000, {elements}), "smallest log decrement")->value.value, 0.2, 1e-12);
   // Nothing that vibrates has a decrement.
   io::StudySummary both = modes_with({"diverges"});
   both.modes.pop_back();

@@ -46,7 +46,7 @@ double resolved_to(const rotor::Options& shaft) {
 
 bool is_of_elements(std::complex<double> lambda, double resolved_to) {
   constexpr double little = 1e-6;
-  return std::abs(lambda.imag()) > resolved_to && lambda.real() < little * std::abs(lambda);
+  return std::abs(lambda.imag()) > resolved_to && std::abs(lambda.real()) < little * std::abs(lambda);
 }
 
 }  // namespace whirl::study

@@ -20,11 +20,14 @@ namespace whirl::study {
 /// Up to where the elements are beams of the shaft: the lower one of both.
 [[nodiscard]] double resolved_to(const rotor::Options& shaft);
 
-/// Whether an eigenvalue that grows is a vibration of the elements: above resolved_to(), and its growth is less than
-/// 1e-6 of its frequency, far less than what the mesh leaves in it.
+/// Whether an eigenvalue is a vibration of the elements: above resolved_to(), and its growth or decay is less than 1e-6
+/// of its frequency, far less than what the mesh leaves in it.
 ///
 /// A shaft without damping of its own has such vibrations on either side of the border of stability by next to nothing:
 /// they decide on no verdict. The same shaft with every segment cut has others.
 [[nodiscard]] bool is_of_elements(std::complex<double> lambda, double resolved_to);
+
+/// What the verdict of such a mode says; whoever sums up modes passes over it.
+inline constexpr const char* not_resolved = "not resolved";
 
 }  // namespace whirl::study

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "study/bars/error_bar.hpp"
+#include "study/bars/unresolved.hpp"
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
@@ -35,6 +37,9 @@ bool surely_grows(const ShaftMode& mode, double speed, const ModeBars& bars) {
 
 const char* stability_of(const ShaftMode& mode, double speed, const ModeBars& bars) {
   if (mode.undamped) return name_of(StabilityClass::undamped);
+  if (bars.of_elements(mode.lambda)) return not_resolved;
+  const double bar = bars.at(mode.id, speed)[0];
+  if (std::isfinite(bar) && !decided(mode.lambda.real(), bar)) return "undetermined";
   if (!mode.grows()) return name_of(StabilityClass::stable);
   if (!surely_grows(mode, speed, bars)) return "undetermined";
   return spectral::vibrates(mode.lambda) ? name_of(StabilityClass::unstable) : "diverges";
@@ -59,10 +64,15 @@ void ModeValues::put_speed(io::StudySummary& summary, const Station& station) co
     summary.set(head + name + ".damping_ratio", spectral::damping_ratio(m->lambda), "1");
   };
   const ShaftMode *forward = nullptr, *least = nullptr;
+  int unresolved = 0;
   std::vector<std::string> growing;
   for (std::size_t k = 0; k < station.listed; ++k) {
     const ShaftMode& m = station.modes[k];
     const bool moves = spectral::vibrates(m.lambda);
+    if (stability_of(m, station.speed, bars_) == std::string_view(not_resolved)) {
+      ++unresolved;
+      continue;
+    }
     if (!forward && moves && tables_.sense_of(m) == spectral::Sense::forward) forward = &m;
     const bool grows = surely_grows(m, station.speed, bars_);
     if ((grows || !m.grows()) && (!least || spectral::damping_ratio(m.lambda) < spectral::damping_ratio(least->lambda)))
@@ -74,6 +84,7 @@ void ModeValues::put_speed(io::StudySummary& summary, const Station& station) co
   put("first_forward", forward);
   put("least_damped", least);
   summary.set(head + "unstable", static_cast<double>(growing.size()), "1");
+  if (unresolved > 0) summary.set(head + "not_resolved", unresolved, "1");
   if (!growing.empty())
     warn_first(summary, fmt::format("at {} {} the machine is unstable: {}", number_text(station.speed, unit_), unit_,
                                     joined(growing)));
@@ -107,7 +118,8 @@ void ModeValues::put_stability(io::StudySummary& summary, const std::vector<Stat
                           });
       count += counts;
       undamped |= m.undamped;
-      doubtful |= m.grows() && !counts;
+      doubtful |= !counts && (m.grows() ? !bars_.of_elements(m.lambda)
+                                        : stability_of(m, s.speed, bars_) == std::string_view("undetermined"));
     }
     verdict.add(deck::from_si(s.speed, unit_),
                 count > 0  ? StabilityClass::unstable

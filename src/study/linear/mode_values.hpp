@@ -16,7 +16,9 @@ namespace whirl::study {
 /// as well), and its real part exceeds its bar. A mode that is listed for its growth alone and has no counterpart on
 /// the other meshes is one of the mesh.
 [[nodiscard]] bool surely_grows(const ShaftMode& mode, double speed, const ModeBars& bars);
-/// "stable", "undamped", "unstable", "undetermined", or "diverges" of a real eigenvalue above zero.
+/// "stable", "undamped", "unstable", "undetermined" (the bar of the real part contains zero, or a mode that grows has
+/// no counterpart on the other meshes), "diverges" of a real eigenvalue above zero, or `not_resolved` of a vibration of
+/// the elements, which decides on no verdict.
 [[nodiscard]] const char* stability_of(const ShaftMode& mode, double speed, const ModeBars& bars);
 
 class ModeValues {
@@ -27,7 +29,8 @@ public:
 
   /// Of a single speed, as "at.SPEED.": frequency [rad/s], log_decrement and damping_ratio of the first forward mode
   /// (`first_forward.`, that of lowest frequency) and of the least damped one (`least_damped.`), and how many modes
-  /// grow for sure (`unstable`). A warning names these.
+  /// grow for sure (`unstable`), and how many decide on nothing (`not_resolved`, if any). A warning names those that
+  /// grow.
   void put_speed(io::StudySummary& summary, const Station& station) const;
   /// Of a range: "unstable.K." with from, to, mode and frequency, and a table; `errors` of the speeds of the crossings
   /// [rad/s]. Ranges of stability and "threshold" are those of a branch over these speeds. A warning names the ranges.

@@ -156,7 +156,8 @@ StudyResult Modes::run(Context& context) {
   });
   std::set<int> shown;
   for (const double speed : speeds)
-    for (std::size_t k = 0; k < station_at(speed).listed; ++k) shown.insert(station_at(speed).modes[k].id);
+    for (std::size_t k = 0; k < station_at(speed).listed; ++k)
+      if (const ShaftMode& m = station_at(speed).modes[k]; !bars.of_elements(m.lambda)) shown.insert(m.id);
   bars.tell(summary, context.machine.rotor, shown);
   ModeReduction reduction(system, walker, sampled);
   ModeTables tables(rotor::node_positions(system.train().rotor), rotor::node_masses(system.train().rotor),
@@ -277,7 +278,8 @@ StudyResult Modes::run(Context& context) {
   spectrum.put(
       "stability", stability_column,
       "stable, unstable, diverges (it grows without oscillation), undetermined (the bar of the real part contains "
-      "zero), or undamped: the real part is rounding, shown as zero");
+      "zero), not resolved (a vibration of the elements of the shaft, which decides on nothing), or undamped: the real "
+      "part is rounding, shown as zero");
   tables.put_map(group.child("whirl_map"));
   tables.warn(summary, searches);
   group.set("speed_unit", unit);

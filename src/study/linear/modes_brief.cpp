@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "study/bars/unresolved.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/shaft_alone.hpp"
 #include "whirl/deck/units.hpp"
@@ -153,10 +154,9 @@ std::string of_ranges(const io::StudySummary& s, const Values& v) {
 
 // Some modes, or all, neither decay nor grow.
 std::string of_undamped(const io::StudySummary& s) {
-  const auto count = std::ranges::count(s.modes, std::string("undamped"), &io::ModeEntry::stability);
-  return count == 0                                   ? ""
-         : count == static_cast<long>(s.modes.size()) ? "no mode found has damping"
-                                                      : "some modes are undamped";
+  const auto count = [&](const char* word) { return std::ranges::count(s.modes, word, &io::ModeEntry::stability); };
+  const auto undamped = count("undamped"), all = static_cast<long>(s.modes.size()) - count(not_resolved);
+  return undamped == 0 ? "" : undamped == all ? "no mode found has damping" : "some modes are undamped";
 }
 
 // What is known at one speed of the list.
@@ -168,7 +168,7 @@ std::string of_speed(const io::StudySummary& s, const Values& v, const std::stri
     return fmt::format("unstable at {} {}: {:.0f} mode{}", speed, unit, growing, growing > 1 ? "s grow" : " grows");
   std::vector<std::string> found;
   for (const io::ModeEntry& m : s.modes)
-    if (fmt::format("{:.6g}", m.speed) == speed) found.push_back(m.stability);
+    if (m.stability != not_resolved && fmt::format("{:.6g}", m.speed) == speed) found.push_back(m.stability);
   if (!found.empty() && std::ranges::count(found, "undamped") == static_cast<long>(found.size()))
     return fmt::format("at {} {} no mode found has damping", speed, unit);
   std::string text = std::ranges::count(found, "undetermined") > 0
@@ -250,6 +250,10 @@ io::BriefTable last_modes(const io::StudySummary& s, const Values& v) {
   }
   std::vector<std::string> notes;
   if (either) notes.emplace_back("either: equal modes, any combination of which is a mode");
+  if (const auto count = std::ranges::count(last, not_resolved, &io::ModeEntry::stability); count > 0)
+    notes.push_back(
+        fmt::format("{} not resolved: vibration{} of single elements of the shaft, which decide{} on nothing", count,
+                    count > 1 ? "s" : "", count > 1 ? "" : "s"));
   if (table.rows.size() < last.size())
     notes.push_back(fmt::format("{} more stand in summary.json", last.size() - table.rows.size()));
   if (const auto count = v.get("overdamped"); count && *count > 0)

@@ -3,12 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <string_view>
 #include <vector>
-
-#include "study/bars/unresolved.hpp"
 
 namespace whirl::study {
 namespace {
@@ -50,11 +47,7 @@ VariantVerdict of_modes(const std::vector<io::ModeEntry>& modes) {
     if (!m.more.contains("mode")) continue;  // of the shaft alone, without its bearings
     note(all, m.speed);
     if (m.stability == "unstable" || m.stability == "diverges") note(unstable, m.speed);
-    // Vibrations of the elements, which the modes of another mesh do not have, decide nothing.
-    const auto bar = m.more.find("real_uncertainty");
-    const bool of_elements =
-        (bar == m.more.end() || !std::isfinite(bar->second)) && is_of_elements({m.real, m.imag}, 0);
-    open = open || (m.stability == "undetermined" && !of_elements);
+    open = open || m.stability == "undetermined";
     undamped = undamped || m.stability == "undamped";
   }
   if (all.empty()) return {};
