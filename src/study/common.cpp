@@ -196,8 +196,9 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   std::vector<std::complex<double>> of_mesh;
   for (const auto& mode : found.modes) {
     if (mode.lambda.real() > 0 && is_of_elements(mode.lambda, limit)) continue;
-    const bool pair_grows = !mode.neutral() && mode.lambda.real() > 0 && mode.lambda.imag() > 0;
-    if (options.shapes && pair_grows && cells_per_wave(system, mode.shape)) {
+    // A real one is a wave that stands still.
+    const bool grows = !mode.neutral() && mode.lambda.real() > 0;
+    if (options.shapes && grows && cells_per_wave(system, mode.shape)) {
       of_mesh.push_back(mode.lambda);
       continue;
     }
