@@ -177,7 +177,10 @@ Verdict classify(const Evidence& e) {
   }
   const auto back = std::find_if(e.returns.begin(), e.returns.end(), [&](double d) { return d < e.return_tolerance; });
   const int period = back == e.returns.end() ? 0 : static_cast<int>(back - e.returns.begin()) + 1;
-  return e.forced ? forced(e, period) : autonomous(e, period);
+  Verdict verdict = e.forced ? forced(e, period) : autonomous(e, period);
+  if (verdict.kind == Kind::unsettled && !e.grows.empty())
+    verdict.reason += "; about the equilibrium a disturbance grows: " + e.grows;
+  return verdict;
 }
 
 }  // namespace whirl::transient

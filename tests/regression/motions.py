@@ -175,6 +175,14 @@ def growing(h, whole=False):
         h.close(f"the growing tone in {bearing} [rpm]", min(tones, key=lambda f: abs(f - 766)), whirl, 3)
         h.close("    and its mirror beside the shaft's speed", min(tones, key=lambda f: abs(f - 1884)), 2650 - whirl, 3)
     h.true("on its way", kind(s) == "unsettled", kind(s))
+    # Begun on unstable equilibria beyond 5021 rpm it rests there to rounding of its state: no cycle.
+    speeds = (5050, 5500, 5800)
+    rest = h.run(h.source / "inputs/turbine_train/self_excited.yaml", "at rest",
+                 ["studies=[" + ", ".join(f"{{motion: {{name: '{n}', speed: {n} rpm, discard: 5, revolutions: 10, exponents: 0}}}}" for n in speeds) + "]"], launcher=[], bars=False)
+    for n in speeds:
+        s = rest[str(n)]
+        h.true(f"{n} rpm: at rest where an oscillation grows", any("at rest at an unstable equilibrium" in w and "an oscillation grows" in w for w in s.get("warnings", [])), str(s.get("warnings")))
+        h.true("    it moves by rounding", value(s, "size") < 1e-8, str(value(s, "size")))
     if not whole:
         return
     s = found["G6.3 at 2600 rpm"]

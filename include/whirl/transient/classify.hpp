@@ -22,7 +22,7 @@ struct Evidence {
   std::vector<double> course;      ///< see course_of_returns(); may be empty
   std::vector<double> exponents;   ///< Lyapunov exponents, the largest first; may be empty
   std::vector<double> uncertainties;  ///< of each
-  std::string grows;                  ///< what grows about the state of rest, in words; empty: nothing, or not asked
+  std::string grows;  ///< what grows about the state of rest or the equilibrium, in words; empty: nothing, or unknown
 };
 
 struct Verdict {
@@ -58,7 +58,8 @@ struct Verdict {
 /// distances between its successive points drift over the record, by more than 1 % and more than five standard errors
 /// of a straight line through the logarithms of `course`: a spiral on its way into a cycle, or away from one, has zero
 /// exponents within their bars for long.
-/// A state of rest about which something grows is no fixed point: the motion has not left it yet.
+/// A state of rest about which something grows is no fixed point: the motion has not left it yet. What grows about the
+/// equilibrium is told of every motion that is unsettled.
 /// A motion that external forces drive is `driven`: where it is at the same shaft angle says nothing of it, and its
 /// exponents, if there are any, tell only whether it forgets where it began.
 [[nodiscard]] Verdict classify(const Evidence& evidence);

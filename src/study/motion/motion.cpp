@@ -11,6 +11,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/open_bore.hpp"
+#include "study/bars/summary_bars.hpp"
 #include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
@@ -191,6 +192,26 @@ private:
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
+  // What grows about the place where the motion rests; of one that does not settle about the equilibrium, which may be
+  // why.
+  void look_for_growth(io::StudySummary& summary) {
+    const transient::Kind kind = record_.verdict().kind;
+    const bool rests = kind == transient::Kind::fixed_point;
+    if (!rests && kind != transient::Kind::unsettled) return;
+    std::string reason;
+    std::optional<Growth> growth;
+    if (rests) {
+      integrator_.state(start_.x.get());
+      growth = growth_at(system_, start_.x.get(), &reason);
+    } else {
+      (void)has_answer([&] { growth = growth_at(system_, find_rest(system_).get()); });
+    }
+    if (growth && growth->any()) record_.set_growth(growth->words());
+    if (growth) warn_of_waves(*growth, rests ? "about the fixed point" : "about the equilibrium", summary);
+    if (rests && !growth)
+      summary.warnings.push_back("it is not known whether the place where the motion rests is stable: " + reason);
+  }
+
   StudyResult report(const std::string& status) {
     auto& results = context_.results;
     auto& summary = results.summary();
@@ -202,15 +223,7 @@ private:
       summary.set(fmt::format("cycle.multiplier.{}.angle", k + 1), std::abs(std::arg(start_.multipliers[k])), "rad");
       summary.set(fmt::format("cycle.exponent.{}", k + 1), std::log(modulus) / period(), "1/s");
     }
-    if (record_.verdict().kind == transient::Kind::fixed_point) {
-      integrator_.state(start_.x.get());
-      std::string reason;
-      const std::optional<Growth> growth = growth_at(system_, start_.x.get(), &reason);
-      if (growth && growth->any()) record_.set_growth(growth->words());
-      if (growth) warn_of_waves(*growth, "about the fixed point", summary);
-      if (!growth)
-        summary.warnings.push_back("it is not known whether the place where the motion rests is stable: " + reason);
-    }
+    look_for_growth(summary);
     auto& group = results.group();
     group.set("speed", options_.speed.value);
     group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));

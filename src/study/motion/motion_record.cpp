@@ -36,10 +36,12 @@ void MotionRecord::sample(const std::vector<system::PlaceState>& shown, Vec stat
     last_.insert(last_.end(), j.position.begin(), j.position.end());
     last_.insert(last_.end(), j.velocity.begin(), j.velocity.end());
   }
+  if (origin_.empty()) origin_ = scaled;
   open_.sum.resize(scaled.size(), 0.0);
   for (std::size_t i = 0; i < scaled.size(); ++i) {
-    open_.sum[i] += scaled[i];
-    open_.squares += scaled[i] * scaled[i];
+    const double moved = scaled[i] - origin_[i];
+    open_.sum[i] += moved;
+    open_.squares += moved * moved;
   }
   last_state_ = scaled;
 }
@@ -245,10 +247,14 @@ void MotionRecord::write(io::Group& group, io::StudySummary& summary) const {
 void MotionRecord::save(io::Group& group, bool shared) const {
   group.put("samples", samples_, places_.unit, "what is shown");
   group.put("ends", ends_, "SI", "what is shown at the ends of revolutions");
-  core::Vector sum = core::duplicate(like_);
-  core::check(VecSet(sum.get(), 0.0));
-  if (!points_.empty()) std::copy(sum_.begin(), sum_.end(), core::WriteArray(sum.get()).data());
-  put_vector(group, "sum", sum.get(), shared, "of scaled states");
+  const auto put = [&](const char* name, const std::vector<double>& entries, const char* what) {
+    core::Vector v = core::duplicate(like_);
+    core::check(VecSet(v.get(), 0.0));
+    if (!points_.empty()) std::copy(entries.begin(), entries.end(), core::WriteArray(v.get()).data());
+    put_vector(group, name, v.get(), shared, what);
+  };
+  put("origin", origin_, "the first scaled state");
+  put("sum", sum_, "of scaled states less the origin");
   double squares = squares_;
   MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(like_));
   MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPI_DOUBLE, MPI_SUM, comm);
@@ -268,9 +274,13 @@ void MotionRecord::load(const io::Group& group) {
   points_.clear();
   const Eigen::MatrixXd points = take_columns(group, "points", like_);
   for (const auto& column : points.colwise()) points_.emplace_back(column.begin(), column.end());
-  core::Vector sum = core::duplicate(like_);
-  take_vector(group, "sum", sum.get());
-  sum_ = entries_here(sum.get());
+  const auto take = [&](const char* name) {
+    core::Vector v = core::duplicate(like_);
+    take_vector(group, name, v.get());
+    return entries_here(v.get());
+  };
+  origin_ = points_.empty() ? std::vector<double>() : take("origin");
+  sum_ = take("sum");
   // One rank's for all.
   squares_ = core::rank_of(PetscObjectComm(reinterpret_cast<PetscObject>(like_))) == 0 ? group.real("squares") : 0.0;
   exponents_ = transient::Exponents(options_.exponents);

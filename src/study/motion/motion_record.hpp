@@ -32,7 +32,7 @@ public:
   void cross(double time, const std::vector<system::PlaceState>& shown, Vec scaled);
   /// What the section is, in words.
   void set_section(std::string text) { section_text_ = std::move(text); }
-  /// What grows about the place where the motion rests, in words; empty: nothing.
+  /// What grows about the place where the motion rests, or about the equilibrium, in words; empty: nothing.
   void set_growth(std::string words) { grows_ = std::move(words); }
   /// Calls back with place, x and y of every sample.
   template <class See>
@@ -73,8 +73,10 @@ private:
   std::vector<double> samples_;  // [sample][place][x, y]
   std::vector<double> ends_;     // [revolution][place][x, y, vx, vy]
   std::vector<double> last_;     // the same of the last sample
-  std::vector<double> sum_;      // of the scaled states of all samples
-  double squares_ = 0;           // of their norms; what of them stands here
+  // Sums of distances: those of states that hardly move would leave rounding of the states themselves.
+  std::vector<double> origin_;  // the first scaled state; empty: none yet
+  std::vector<double> sum_;     // of the scaled states of all samples, less the origin
+  double squares_ = 0;          // of their norms; what of them stands here
   struct Open {
     std::vector<double> samples, sum;
     double squares = 0;
