@@ -340,6 +340,8 @@ private:
     for (const double v : table.reals("speed")) speeds.push_back(deck::number_to_si(v, speed.unit));
     if (speeds.size() < 2) return;
     const double slack = 1.01 * std::abs(speeds[speeds.size() - 1] - speeds[speeds.size() - 2]);
+    const Quantity* grows = find(s, "operating_speed.unstable_count");
+    if (grows) vote_of(static_cast<std::int64_t>(grows->value), s.name);
     for (const char* column : {"amplitude", "node_amplitude"}) {
       if (!table.has_dataset(column)) continue;
       const io::Dataset& data = table.dataset(column);
@@ -352,8 +354,9 @@ private:
         const auto in_start = at_speed(
             speeds, [&](std::size_t k) { return table.reals("start_transient")[k]; }, speed_, slack);
         const std::string mark =
-            fmt::format("0-peak, run-up at {:.4g} rad/s^2{}", group->real("acceleration"),
-                        in_start && in_start->value > 0 ? ", with the free vibration of its start" : "");
+            fmt::format("0-peak, run-up at {:.4g} rad/s^2{}{}", group->real("acceleration"),
+                        in_start && in_start->value > 0 ? ", with the free vibration of its start" : "",
+                        grows && grows->value > 0 ? ", about an unstable equilibrium" : "");
         keep(vibration_, {"largest vibration", data.labels.at(0).at(p), {at->value, "m"}, mark, s.name}, true);
       }
     }

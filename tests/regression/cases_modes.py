@@ -37,6 +37,22 @@ def divergence(h):
     h.true("the branch is unstable, and the motion does not rest", s["b"]["stability"] == "unstable throughout" and "motion.unsettled" in s["mo"]["values"],
            f"{s['b']['stability']} {list(s['mo']['values'])}")
     h.true("the motion says why", warned(s["mo"], "has not settled", "diverges", "+311.3"), str(s["mo"].get("warnings")))
+    # A run-up names the speeds, and what holds at the service speed; a forced motion names what carries it away.
+    s = h.run(deck, "runs", ["unbalance={u: {planes: [{node: 1, amount: 1e-5 kg m}]}}", "service_speed=8500 rpm",
+                             "studies=[{run_up: {name: up, unbalance: [u], range: {from: 8000 rpm, to: 9000 rpm}, duration: 0.05 s}},"
+                             " {motion: {name: forced, unbalance: [u], speed: 100 rad/s, discard: 1, revolutions: 3}}]"], launcher=[])
+    h.true("a run-up says where", warned(s["up"], "unstable from 8000 to 9000 rpm", "diverges", "+311.3") and s["up"]["stability"] == "unstable at the 3 speeds counted",
+           f"{s['up']['stability']} {s['up'].get('warnings')}")
+    whole = json.loads((h.work / "runs" / "summary.json").read_text())["service_speed"]
+    h.true("its vibration is about an unstable equilibrium", any("unstable equilibrium" in f["mark"] for f in whole["facts"]), str(whole))
+    h.true("a forced motion diverges", warned(s["forced"], "has not settled", "diverges", "+311.3"), str(s["forced"].get("warnings")))
+    # Oscillations that the film feeds from 637 rad/s on: stable at the beginning of the way, unstable at its end.
+    fed = "bearings={left: {node: 1, film: {type: linear, stiffness: [1e6 N/m, 0 N/m, 0 N/m, 1e6 N/m], damping: 100 N s/m}}}"
+    drive = "elements={seal: {node: 1, role: seal, static_load: true, table: [{speed: 0 rad/s, k_xy: 0 N/m, k_yx: 0 N/m}, {speed: 1000 rad/s, k_xy: 50 kN/m, k_yx: -50 kN/m}]}}"
+    s = h.run(deck, "crossed", ["unbalance={u: {planes: [{node: 1, amount: 1e-5 kg m}]}}", fed, drive,
+                                "studies=[{run_up: {name: up, unbalance: [u], range: {from: 400 rad/s, to: 1000 rad/s}, duration: 0.1 s}}]"], launcher=[])["up"]
+    # s = +-i 316.2 to first order grows from k_xy = 100 N s/m x 316.2 rad/s on, at 632 rad/s.
+    h.true("it names the stable side", warned(s, "unstable from 650 to 1000 rad/s (stable at 600)", "an oscillation grows"), f"{s['stability']} {s.get('warnings')}")
     # What is linear cannot be chaotic: it grows without bound.
     cross = "bearings={left: {node: 1, film: {type: linear, stiffness: [1e6 N/m, 1e5 N/m, -1e5 N/m, 1e6 N/m], damping: 100 N s/m}}}"
     s = h.run(deck, "grows", ["unbalance={u: {planes: [{node: 1, amount: 1e-5 kg m}]}}", cross,

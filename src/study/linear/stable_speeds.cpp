@@ -70,7 +70,8 @@ std::vector<StableSpeeds::Stretch> StableSpeeds::stretches() const {
   return out;
 }
 
-void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit) {
+void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit,
+                 const std::string& consequence) {
   const auto stretches = stable.stretches();
   if (stretches.empty()) return;
   const std::string counted = fmt::format("the {} speeds counted", stable.counted());
@@ -87,10 +88,7 @@ void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const st
     verdict += (verdict.empty() ? "" : ", ") + s.stability + " " + where;
     warned.push_back(
         s.stability == "unstable"
-            ? fmt::format(
-                  "the equilibrium is unstable {}: no vibration settles into the linear response there, and its "
-                  "peaks, amplification factors and margins are those of no motion",
-                  where)
+            ? fmt::format("the equilibrium is unstable {}: {}", where, consequence)
             : fmt::format("whether the equilibrium is stable {} is not known: eigenvalues may be missing", where));
   }
   for (auto line = warned.rbegin(); line != warned.rend(); ++line) warn_first(summary, std::move(*line));

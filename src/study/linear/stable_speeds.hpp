@@ -48,8 +48,8 @@ private:
 };
 
 /// Puts the verdict over the speeds, shown in `unit`: "stable at the N speeds counted" if these are. And a warning that
-/// names where the equilibrium is unstable or not known: there no vibration settles into the linear response, and
-/// margins mean nothing.
-void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit);
+/// names where the equilibrium is unstable, with the `consequence` for the study, or not known.
+void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const std::string& unit,
+                 const std::string& consequence);
 
 }  // namespace whirl::study

@@ -89,7 +89,9 @@ void put_stability(io::Group& group, io::StudySummary& summary, const std::vecto
       .put("unstable_count", numbers,
            "eigenvalues that grow about the equilibrium, between the speeds counted as beside them; -1: some may be "
            "missing");
-  put_verdict(summary, stable, unit);
+  put_verdict(summary, stable, unit,
+              "no vibration settles into the linear response there, and its peaks, amplification factors and margins "
+              "are those of no motion");
   if (operating) summary.set("operating_speed.unstable_count", stable.at(operating->value), "1");
 }
 

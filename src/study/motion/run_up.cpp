@@ -15,11 +15,14 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/brief.hpp"
 #include "study/common.hpp"
+#include "study/growth.hpp"
 #include "study/layout.hpp"
+#include "study/linear/stable_speeds.hpp"
 #include "study/motion/motion_start.hpp"
 #include "study/motion/revolution.hpp"
 #include "study/motion/short_time.hpp"
 #include "study/stored_vector.hpp"
+#include "study/tabled_speeds.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -28,8 +31,6 @@
 
 namespace whirl::study {
 namespace {
-
-using core::check;
 
 problem::Drive drive_of(const RunUpOptions& o) {
   const double change = o.range.to - o.range.from;
@@ -89,7 +90,7 @@ public:
   }
 
   StudyResult run() {
-    slowest_ = slowest_decay();
+    count_growth();
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     std::string status = "completed";
     try {
@@ -168,20 +169,59 @@ private:
                     integrator_.step() * system_.speed() / (2 * std::numbers::pi), context_.results.seconds()));
   }
 
+  // What grows about the equilibria at constant speed: at both ends of the range, at the service speed, and where that
+  // differs at speeds between. At the start also what fades most slowly.
+  void count_growth() {
+    const double from = options_.range.from, to = options_.range.to, low = std::min(from, to),
+                 high = std::max(from, to);
+    constexpr int parts = 12;
+    std::vector<double> first{low, high}, all{low};
+    for (int k = 1; k < parts; ++k) all.push_back(low + (high - low) * k / parts);
+    all.push_back(high);
+    const auto& service = context_.machine.service_speed;
+    if (service && low < service->value && service->value < high) {
+      put_between(all, service->value);
+      first.push_back(service->value);
+    }
+    system_.set_acceleration(0);
+    Walker walker(system_);
+    const auto count = [&](double speed) {
+      solve::Stability there;
+      if (!has_answer([&] { there = equilibrium_stability(system_, walker.at(speed)); })) return StableSpeeds::unknown;
+      if (speed == from) slowest_ = slowest_of(there);
+      const Growth growth = growth_of(there);
+      if (growth.any() && growth.count() >= fastest_.first.count()) fastest_ = {growth, speed};
+      return growth.known_count();
+    };
+    stable_ = StableSpeeds(std::move(all), first, [&](const std::vector<double>& speeds) {
+      std::vector<int> out;
+      for (const double speed : speeds) out.push_back(count(speed));
+      return out;
+    });
+    system_.set_parameter(drive_.speed);
+    system_.set_acceleration(drive_.acceleration);
+  }
+
   // Real part of the least damped vibration about the equilibrium at the start [1/s]: its free vibration fades from the
-  // start on. Not negative: it does not fade, or nothing starts; not a number: not known.
-  double slowest_decay() {
+  // start on. Not negative: it does not fade, or nothing starts.
+  [[nodiscard]] double slowest_of(const solve::Stability& at_start) const {
     if (options_.start.from == MotionStart::From::cycle) return 0;
     double slowest = -std::numeric_limits<double>::infinity();
-    core::Vector rest = core::duplicate(x_.get());
-    check(VecCopy(x_.get(), rest.get()));
-    const auto find = [&] {
-      if (!find_rest(system_, rest.get()).converged) throw core::NotConverged("no equilibrium");
-      for (const auto& s : equilibrium_stability(system_, rest.get()).values)
-        if (s.imag() != 0) slowest = std::max(slowest, s.real());
-    };
-    if (!has_answer(find)) return io::no_value;
+    for (const auto& s : at_start.values)
+      if (s.imag() != 0) slowest = std::max(slowest, s.real());
     return slowest;
+  }
+
+  void put_stability(io::StudySummary& summary) const {
+    const auto& [growth, speed] = fastest_;
+    put_verdict(summary, stable_, unit_,
+                fmt::format("at {} {} {}. Vibration grows there by itself, and how large it becomes depends on the "
+                            "duration of the run",
+                            number_text(speed, unit_), unit_, growth.words()));
+    const auto& service = context_.machine.service_speed;
+    if (!service) return;
+    if (const int n = stable_.at(service->value); n != StableSpeeds::unknown)
+      summary.set("operating_speed.unstable_count", n, "1");
   }
 
   // Rows of the revolutions before `end` that have none yet.
@@ -355,6 +395,7 @@ private:
       if (!nodes.empty()) put_peaks(summary, "node_amplitude", nodes);
     }
     bores_.warn(summary, unit_);
+    put_stability(summary);
     auto& group = results.group();
     table_.write(group.child("run_up"));
     write_spectra(group);
@@ -382,9 +423,11 @@ private:
   io::Table table_;
   std::vector<double> kept_;  // [sample][place and node][x, y]
   Neighbours neighbours_;
-  double slowest_ = 0;
-  std::vector<double> thinnest_;  // [revolution][place]; not a number without a film
-  double margin_ = 0;             // of the films at the last sample
+  double slowest_ = io::no_value;      // see slowest_of(); not a number: not known
+  StableSpeeds stable_;                // equilibria at constant speed
+  std::pair<Growth, double> fastest_;  // of the most unstable one of these, and its speed
+  std::vector<double> thinnest_;       // [revolution][place]; not a number without a film
+  double margin_ = 0;                  // of the films at the last sample
   std::optional<double> thin_at_;
   int total_ = 0, done_ = 0;
   double last_saved_ = -1e9;
