@@ -3,12 +3,66 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "sense.hpp"
+#include "whirl/study/bearing/thd.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
 
 namespace whirl::study {
+
+namespace {
+
+// A response is asked for at the service speed of the machine too, unless it names another one.
+bool serves(const system::Machine& machine, const Study& study) {
+  const auto* response = dynamic_cast<const UnbalanceResponse*>(&study);
+  return response && !response->options.operating_speed && machine.service_speed;
+}
+
+// [rad/s]
+std::vector<double> asked_speeds(const system::Machine& machine, const Study& study) {
+  std::vector<double> speeds = study.speeds();
+  if (serves(machine, study)) speeds.push_back(machine.service_speed->value);
+  return speeds;
+}
+
+// Least thickness of the film of each bearing in the tables of a result, NaN where they have none.
+std::vector<double> thinnest_films(const io::Group& group, const system::Machine& machine, const std::string& bearing) {
+  std::vector<double> thinnest(machine.bearings.size(), io::no_value);
+  const auto one = system::find_bearing(machine, bearing);
+  for (const auto& [table, column] : {std::pair("branch", "film"),
+                                      {"branch", "film_min"},
+                                      {"places", "min_thickness"},
+                                      {"curves", "min_thickness"},
+                                      {"equilibria", "min_thickness"},
+                                      {"locus", "min_thickness"}}) {
+    if (!group.has_group(table) || !group.group(table).has_dataset(column)) continue;
+    const std::vector<double>& all = group.group(table).reals(column);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      double& here = thinnest[one ? *one : k % thinnest.size()];
+      here = std::fmin(here, all[k]);
+    }
+  }
+  return thinnest;
+}
+
+// What the films of a study are like where its equations of them end.
+void judge_films(StudyResult& result, const system::Machine& machine, const Study& study) {
+  constexpr std::array without_films{"alignment", "critical_speed_map"};
+  if (!result.delivered || machine.bearings.empty() || std::ranges::count(without_films, study.kind()) > 0) return;
+  if (study.kind() == Thd::key) return;  // which has a film of its own
+  AskedFilms asked;
+  for (const double speed : asked_speeds(machine, study)) asked.speed = std::max(asked.speed, std::abs(speed));
+  if (asked.speed == 0) return;
+  if (result.group.has_attribute("bearing")) asked.bearing = result.group.text("bearing");
+  asked.thinnest = thinnest_films(result.group, machine, asked.bearing);
+  warn_of_films(result.summary, system::train_of(machine), asked);
+}
+
+}  // namespace
 
 std::vector<std::string> machine_warnings(const system::Machine& machine) {
   std::vector<std::string> lines;
@@ -29,12 +83,8 @@ std::vector<std::string> machine_warnings(const system::Machine& machine) {
 }
 
 std::vector<std::string> table_warnings(const system::Machine& machine, const Study& study) {
-  std::vector<double> speeds = study.speeds();
+  const std::vector<double> speeds = asked_speeds(machine, study);
   if (speeds.empty() || !system::is_rotor(machine)) return {};
-  // A response is asked for at the service speed of the machine too, unless it names another one.
-  const auto* response = dynamic_cast<const UnbalanceResponse*>(&study);
-  const bool serves = response && !response->options.operating_speed && machine.service_speed;
-  if (serves) speeds.push_back(machine.service_speed->value);
   const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
   const auto both = [](double speed) {
     return fmt::format("{:.6g} rad/s ({:.6g} rpm)", speed, speed * 30 / std::numbers::pi);
@@ -46,8 +96,8 @@ std::vector<std::string> table_warnings(const system::Machine& machine, const St
     const double rounding = 1e-9 * to;
     if (*least >= from - rounding && *most <= to + rounding) return;
     lines.push_back(fmt::format("'{}' asks for {}{}, and the table of {} goes from {} to {}: beyond it {}",
-                                study.name(), asked, serves ? " (service_speed among them)" : "", what, both(from),
-                                both(to),
+                                study.name(), asked, serves(machine, study) ? " (service_speed among them)" : "", what,
+                                both(from), both(to),
                                 holds ? "the coefficients of its nearest end are kept (extrapolate: hold)"
                                       : "there is no answer; 'extrapolate: hold' keeps the coefficients of its nearest "
                                         "end"));
@@ -65,6 +115,7 @@ std::vector<std::string> table_warnings(const system::Machine& machine, const St
 
 void put_premises(StudyResult& result, const system::Machine& machine, const Study& study) {
   if (!system::is_rotor(machine)) return;
+  judge_films(result, machine, study);
   for (std::string& line : table_warnings(machine, study)) result.summary.warnings.push_back(std::move(line));
   std::vector<std::string> names;
   std::vector<std::int64_t> planes, nodes;

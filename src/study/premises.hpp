@@ -15,7 +15,8 @@ namespace whirl::study {
 [[nodiscard]] std::vector<std::string> table_warnings(const system::Machine& machine, const Study& study);
 
 /// Adds the unbalance that the study applies: the mass of each grade, `unbalance.NAME.mass` [kg], U of each plane,
-/// `unbalance.NAME.plane.K` [kg m], and a table `unbalance` of all planes; and the lines of table_warnings().
+/// `unbalance.NAME.plane.K` [kg m], and a table `unbalance` of all planes; the lines of table_warnings(), and
+/// warn_of_films() of every study that solves a film of the machine.
 void put_premises(StudyResult& result, const system::Machine& machine, const Study& study);
 
 }  // namespace whirl::study

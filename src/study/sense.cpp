@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "study/bearing/gas_point.hpp"
 #include "whirl/film/facts.hpp"
@@ -60,6 +62,54 @@ constexpr Usual modulus{"modulus", 1e9, 1e12, "GPa", 1e-9, "steel has about 206 
 constexpr Usual shear_modulus{"shear modulus", 3e8, 5e11, "GPa", 1e-9, "steel has about 80 GPa, aluminium 26 GPa"};
 constexpr Usual gas_density{"density", 0.05, 50, "kg/m^3", 1, "air has 1.2 kg/m^3 at 20 degC"};
 constexpr Usual gas_viscosity{"viscosity", 5e-6, 1e-4, "mPa s", 1e3, "air has 0.018 mPa s at 20 degC"};
+
+// Of the same without results: a gas as dense as at its ends, an oil as viscous as where it is coldest.
+Fluid thickest_fluid(const system::Support& s) {
+  film::FilmReport report;
+  if (const auto* gas = film::find<film::Gas>(s.film)) report.max_pressure = gas->ambient;
+  if (const auto* thd = film::find<film::Thd>(s.film)) {
+    report.mean_temperature = thd->feed;
+    for (const film::HeatedWall* wall : {&thd->bush, &thd->journal})
+      if (wall->type == film::HeatedWall::Type::isothermal)
+        report.mean_temperature = std::min(report.mean_temperature, wall->temperature);
+  }
+  return fluid_of(s, report);
+}
+
+double reynolds_number(const system::Support& s, const Fluid& fluid, double speed) {
+  return fluid.density * std::abs(speed) * s.geometry.radius * s.geometry.clearance / fluid.viscosity;
+}
+
+double knudsen_number(const system::Support& s, const film::Gas& gas, double thickness) {
+  return mean_free_path(gas, s.lubricant.viscosity, gas.ambient) / thickness;
+}
+
+std::string laminar_words(const film::Geometry& geometry, double speed) {
+  return fmt::format(
+      "Reynolds number at {:.6g} rad/s ({:.6g} rpm) of a film that is computed as laminar; vortices or turbulence "
+      "begin "
+      "at {:.4g}: 'turbulence' of a film of type reynolds or thd counts it",
+      speed, speed * 30 / std::numbers::pi, laminar_limit(geometry));
+}
+
+// Sentences, each on all the bearings of which it is true.
+class Sentences {
+public:
+  void add(const std::string& bearing, double number, const std::string& end) {
+    const auto known = std::ranges::find(all_, end, &Sentence::first);
+    auto& bearings = known == all_.end() ? all_.emplace_back(end, std::vector<std::string>{}).second : known->second;
+    bearings.push_back(fmt::format("{} ({:.4g})", bearing, number));
+  }
+  void put(io::StudySummary& summary) const {
+    for (const auto& [end, bearings] : all_)
+      summary.warnings.push_back(
+          fmt::format("{} {}: {}", bearings.size() == 1 ? "bearing" : "bearings", fmt::join(bearings, ", "), end));
+  }
+
+private:
+  using Sentence = std::pair<std::string, std::vector<std::string>>;
+  std::vector<Sentence> all_;
+};
 
 }  // namespace
 
@@ -137,47 +187,29 @@ void put_film_numbers(io::StudySummary& summary, const std::string& head, const 
                       const film::FilmReport& report, double load, double speed) {
   const film::Geometry& g = support.geometry;
   if (g.length > 0) summary.set(head + "specific_load", std::abs(load) / (2 * g.radius * g.length), "Pa");
-  const Fluid fluid = fluid_of(support, report);
-  const double reynolds = fluid.density * std::abs(speed) * g.radius * g.clearance / fluid.viscosity;
+  const double reynolds = reynolds_number(support, fluid_of(support, report), speed);
   if (reynolds > 0 && std::isfinite(reynolds)) summary.set(head + "reynolds_number", reynolds, "1");
   if (const auto* gas = film::find<film::Gas>(support.film))
-    summary.set(head + "knudsen_number",
-                mean_free_path(*gas, support.lubricant.viscosity, gas->ambient) / report.min_thickness, "1");
+    summary.set(head + "knudsen_number", knudsen_number(support, *gas, report.min_thickness), "1");
 }
 
-void warn_of_slip(io::StudySummary& summary, const system::Support& support, double thinnest) {
-  const auto* gas = film::find<film::Gas>(support.film);
-  if (!gas) return;
-  const double knudsen = mean_free_path(*gas, support.lubricant.viscosity, gas->ambient) / thinnest;
-  if (knudsen > slip_limit(*gas))
-    summary.warnings.push_back(fmt::format(
-        "the Knudsen number reaches {:.4g} where the film is thinnest ({:.3g} um); its law of slip holds up to {:g}: "
-        "see 'slip'",
-        knudsen, 1e6 * thinnest, slip_limit(*gas)));
-}
-
-void warn_of_films(io::StudySummary& summary, const system::Train& train) {
-  const auto value = [&](const std::string& name) -> io::Quantity {
+void warn_of_films(io::StudySummary& summary, const system::Train& train, const AskedFilms& asked) {
+  const auto value = [&](const std::string& name) -> const io::Quantity* {
     const auto at = std::find_if(summary.values.begin(), summary.values.end(),
                                  [&](const auto& entry) { return entry.first == name; });
-    return at == summary.values.end() ? io::Quantity{} : at->second;
+    return at == summary.values.end() ? nullptr : &at->second;
   };
-  const auto above = [](const io::Quantity& q, double limit) {
-    const auto bar = q.more.find("uncertainty");
-    return q.value - (bar != q.more.end() && std::isfinite(bar->second) ? bar->second : 0) > limit;
-  };
-  // One sentence on all bearings of which it is true, by its end.
-  std::vector<std::pair<std::string, std::vector<std::string>>> sentences;
-  for (const system::Support& s : train.supports) {
-    if (!(s.geometry.clearance > 0)) continue;
+  Sentences sentences;
+  for (std::size_t b = 0; b < train.supports.size(); ++b) {
+    const system::Support& s = train.supports[b];
+    if (!(s.geometry.clearance > 0) || (!asked.bearing.empty() && s.name != asked.bearing)) continue;
+    const std::string head = "bearing." + s.name + ".";
     const auto check = [&](const char* name, double limit, const std::string& end, double to_unit) {
-      const io::Quantity q = value("bearing." + s.name + "." + name);
-      if (!above(q, limit)) return;
-      const auto known =
-          std::find_if(sentences.begin(), sentences.end(), [&](const auto& e) { return e.first == end; });
-      auto& bearings =
-          known == sentences.end() ? sentences.emplace_back(end, std::vector<std::string>{}).second : known->second;
-      bearings.push_back(fmt::format("{} ({:.4g})", s.name, q.value * to_unit));
+      const io::Quantity* q = value(head + name);
+      if (!q) return;
+      const auto bar = q->more.find("uncertainty");
+      if (q->value - (bar != q->more.end() && std::isfinite(bar->second) ? bar->second : 0) > limit)
+        sentences.add(s.name, q->value * to_unit, end);
     };
     check("specific_load", white_metal_load,
           fmt::format("load over projected area in MPa; white metal bears {:g} MPa (ISO 7902-3)",
@@ -187,22 +219,37 @@ void warn_of_films(io::StudySummary& summary, const system::Train& train) {
           fmt::format("largest film pressure in MPa; white metal yields at about {:g} MPa at 100 degC (ASTM B23)",
                       white_metal_pressure * 1e-6),
           1e-6);
-    if (is_laminar(s.film))
-      check(
-          "reynolds_number", laminar_limit(s.geometry),
-          fmt::format("Reynolds number of a film that is computed as laminar; vortices or turbulence begin at {:.4g}: "
-                      "'turbulence' of a film of type reynolds or thd counts it",
-                      laminar_limit(s.geometry)),
-          1);
-    if (const auto* gas = film::find<film::Gas>(s.film))
-      check("knudsen_number", slip_limit(*gas),
-            fmt::format("Knudsen number where the film is thinnest; its law of slip holds up to {:g}: see 'slip'",
-                        slip_limit(*gas)),
-            1);
+    if (film::facts(s.film).coefficients) continue;
+    if (is_laminar(s.film)) {
+      const std::string end = laminar_words(s.geometry, asked.speed);
+      const double least = reynolds_number(s, thickest_fluid(s), asked.speed);
+      if (value(head + "reynolds_number"))
+        check("reynolds_number", laminar_limit(s.geometry), end, 1);
+      else if (least > laminar_limit(s.geometry))
+        sentences.add(s.name, least, end);
+    }
+    if (const auto* gas = film::find<film::Gas>(s.film)) {
+      const double limit = slip_limit(*gas);
+      const auto words = [&](const char* where) {
+        return fmt::format("Knudsen number {}; its law of slip holds up to {:g}: see 'slip'", where, limit);
+      };
+      constexpr const char* thinnest = "where the film is thinnest";
+      const double known = b < asked.thinnest.size() ? asked.thinnest[b] : io::no_value;
+      const double number = knudsen_number(s, *gas, std::isfinite(known) ? known : s.geometry.clearance);
+      if (value(head + "knudsen_number"))
+        check("knudsen_number", limit, words(thinnest), 1);
+      else if (number > limit)
+        sentences.add(s.name, number, words(std::isfinite(known) ? thinnest : "of a film as thick as the clearance"));
+    }
   }
-  for (const auto& [end, bearings] : sentences)
-    summary.warnings.push_back(
-        fmt::format("{} {}: {}", bearings.size() == 1 ? "bearing" : "bearings", fmt::join(bearings, ", "), end));
+  sentences.put(summary);
+}
+
+void warn_of_reynolds(io::StudySummary& summary, const std::string& bearing, const film::Geometry& geometry,
+                      double reynolds, double speed) {
+  Sentences sentences;
+  if (reynolds > laminar_limit(geometry)) sentences.add(bearing, reynolds, laminar_words(geometry, speed));
+  sentences.put(summary);
 }
 
 }  // namespace whirl::study

@@ -37,10 +37,20 @@ inline constexpr double white_metal_load = 5e6, white_metal_pressure = 20e6;  //
 void put_film_numbers(io::StudySummary& summary, const std::string& head, const system::Support& support,
                       const film::FilmReport& report, double load, double speed);
 
-/// Warns of films of gas that are thinner than their law of slip allows; `thinnest` [m] of what a study computed.
-void warn_of_slip(io::StudySummary& summary, const system::Support& support, double thinnest);
+/// What a study asks of its films, beside the values in its summary.
+struct AskedFilms {
+  double speed = 0;                ///< highest one [rad/s]; 0: none
+  std::string bearing;             ///< the one that it is about; empty: all
+  std::vector<double> thinnest{};  ///< of each bearing of the machine [m]; empty, or not a number: not known
+};
 
-/// Warns of what the values of put_film_numbers() and `max_pressure` say, beyond their bars.
-void warn_of_films(io::StudySummary& summary, const system::Train& train);
+/// Warns of what the values of put_film_numbers() and `max_pressure` say, beyond their bars. Without these values the
+/// Reynolds number is that of the least dense and most viscous state of the film, a bound from below, at the highest
+/// speed; the Knudsen number is that at the thinnest place known, or of a film as thick as the clearance.
+void warn_of_films(io::StudySummary& summary, const system::Train& train, const AskedFilms& asked);
+
+/// Warns of a Reynolds number of a laminar film above laminar_limit(), for a film that is none of the machine's.
+void warn_of_reynolds(io::StudySummary& summary, const std::string& bearing, const film::Geometry& geometry,
+                      double reynolds, double speed);
 
 }  // namespace whirl::study

@@ -146,6 +146,9 @@ def slip(h):
         # 0.0669 over the thickness at the largest eccentricity, beyond 0.01 and within 0.1 and 1.
         h.true("    warned of beyond the law of slip", any("law of slip" in w for w in s.get("warnings", [])) == (name != "second" and knudsen / 0.6 > {"none": 0.01, "first": 0.1}[name]),
                str(s.get("warnings")))
+    studies = "studies=[{bearing_map: {name: map, speed: 40 rad/s, points: 2, max_eccentricity: 0.4}}]"
+    s = h.run(deck, "elsewhere", ["bearings.A.film.slip=none", "bearings.A.film.cells=[24, 8]", studies], launcher=[], bars=False)["map"]
+    h.true("    a map as well", any(f"A ({knudsen / 0.6:.4g})" in w and "law of slip" in w for w in s.get("warnings", [])), str(s.get("warnings")))
     h.run(deck, "whole", launcher=[])
 
 

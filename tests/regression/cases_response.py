@@ -96,6 +96,19 @@ def pump(h):
     s = h.run(h.source / "tests/cases/vertical_pump.yaml", "pump", ["studies=[{static: {name: s, speed: 3000 rpm}}]"])["s"]
     h.close("Reynolds number", value(s, "bearing.B1.reynolds_number"), 995 * 314.159265 * 0.04 * 150e-6 / 0.7e-3, 0.01)
     h.true("is above the laminar limit", warned(s, "B1 (2679)", "B4 (2679)", "laminar"), str(s.get("warnings")))
+    every = ["modes: {name: m, speeds: [3000 rpm], count: 3}", "equilibrium_branch: {name: b, range: {from: 2950 rpm, to: 3000 rpm}}",
+             "unbalance_response: {name: r, unbalance: [u], range: {from: 2950 rpm, to: 3000 rpm}, points: 2}",
+             "dynamic_coefficients: {name: d, bearing: B1, speeds: [3000 rpm], eccentricity: 0.5}",
+             "bearing_map: {name: bm, bearing: B1, speed: 3000 rpm, points: 2, grid: 3}", "critical_speed_map: {name: c, count: 1, stiffness: {from: 1 MN/m, to: 10 MN/m}, points: 2}"]
+    s = h.run(h.source / "tests/cases/vertical_pump.yaml", "studies", ["unbalance={u: {planes: [{node: 3, amount: 1e-5 kg m}]}}", f"studies=[{', '.join('{' + e + '}' for e in every)}]"], bars=False)
+    h.true("every study of these films says so", [n for n in s if warned(s[n], "B1 (2679)", "laminar", "3000 rpm")] == ["m", "b", "r", "d", "bm"], str({n: s[n].get("warnings") for n in s}))
+    h.true("of one bearing where it is about one", not warned(s["bm"], "B4 (2679)") and warned(s["m"], "B4 (2679)"))
+    # A study with a film of its own: rho Omega R c/mu at its temperature, which hardly rises.
+    film = ("{name: t, speeds: [400 rpm, 4000 rpm], eccentricity: 0.5, cells: [24, 8, 4], cavitation: reynolds, ambient: {temperature: 40 degC}, bush: {type: adiabatic}, journal: {type: adiabatic},"
+            " fluid: {type: liquid, viscosity: {type: constant, value: 0.7 mPa s}, density: 995 kg/m^3, heat_capacity: 4180 J/(kg K), conductivity: 0.6 W/(m K)},"
+            " grooves: [{angle: 135 deg, width: 18 deg, length: 70 mm, pressure: 70 kPa, temperature: 40 degC, mixing: true}]}")
+    s = h.run(h.source / "inputs/thd/oil_groove.yaml", "heat", [f"studies=[{{thd: {film}}}]"], bars=False)["t"]
+    h.true("with heat, at the highest speed", warned(s, "(4317)", "418.879 rad/s (4000 rpm)", "begin at 763"), str(s.get("warnings")))
     s = h.run(h.source / "tests/cases/vertical_pump.yaml", "turbulent", ["studies=[{static: {name: s, speed: 3000 rpm}}]", "bearings.{B1,B2,B3,B4}.film.turbulence=constantinescu",
                                                                          "lubricants.water.viscosity=700 mPa s"])
     top = whole(h, "turbulent").get("warnings", [])

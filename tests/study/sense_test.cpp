@@ -175,3 +175,49 @@ TEST(MeshWaves, AreSaidOnce) {
        {"at 1.9 to 2.1 N", "up to 2 waves of the film's mesh (551 to 711 rad/s)", "differences: upwind"})
     EXPECT_NE(summary.warnings[0].find(part), std::string::npos) << summary.warnings[0];
 }
+
+// Without results: a bound from what is known of the film. With them: these.
+TEST(FilmSense, NeedsNoSolution) {
+  system::Machine machine =
+      machine_with({bore(film::Geometry::Bore::cylindrical, 0), bore(film::Geometry::Bore::cylindrical, 0)});
+  const auto said = [&](const study::AskedFilms& asked, double value = 0) {
+    io::StudySummary summary;
+    if (value > 0) summary.set("bearing.B1.reynolds_number", value, "1");
+    warn_of_films(summary, system::train_of(machine), asked);
+    return summary.warnings;
+  };
+  // rho Omega R c/mu of 860 x 2000 x 0.05 x 1e-4/0.01 is 860, and 41.1 sqrt(500) is 919.
+  EXPECT_TRUE(said({2000, "", {}}).empty());
+  ASSERT_EQ(said({3000, "", {}}).size(), 1U) << "one sentence of both";
+  EXPECT_EQ(said({3000, "", {}})[0].find("bearings B1 (1290), B2 (1290): Reynolds number at 3000 rad/s"), 0U)
+      << said({3000, "", {}})[0];
+  EXPECT_EQ(said({3000, "B2", {}})[0].find("bearing B2 (1290): "), 0U);
+  EXPECT_EQ(said({3000, "", {}}, 900)[0].find("bearing B2 (1290): "), 0U) << "what was computed counts";
+  EXPECT_EQ(said({2000, "", {}}, 950)[0].find("bearing B1 (950): "), 0U);
+  machine.bearings.pop_back();
+  film::Reynolds turbulent;
+  turbulent.turbulence = film::Turbulence::constantinescu;
+  machine.bearings[0].film = turbulent;
+  EXPECT_TRUE(said({3000, "", {}}).empty());
+  // Of oil that is hot nobody knows how hot: the coldest is the most viscous.
+  film::Thd hot;
+  hot.viscosity = thermal::ViscosityOptions{};
+  hot.viscosity->law = thermal::ConstantViscosity{0.005};
+  machine.bearings[0].film = hot;
+  EXPECT_EQ(said({2000, "", {}})[0].find("bearing B1 (1720): "), 0U);
+  // mu/p sqrt(pi r T/2) of air is 0.067 um.
+  film::Gas gas;
+  machine.lubricants["oil"] = {18.46e-6, 1.2};
+  machine.bearings[0].geometry->clearance = 5e-6;
+  machine.bearings[0].film = gas;
+  ASSERT_EQ(said({40, "", {}}).size(), 1U);
+  EXPECT_NE(said({40, "", {}})[0].find("bearing B1 (0.01339): Knudsen number of a film as thick as the clearance"),
+            std::string::npos)
+      << said({40, "", {}})[0];
+  EXPECT_NE(said({40, "", {1e-6}})[0].find("bearing B1 (0.06697): Knudsen number where the film is thinnest"),
+            std::string::npos)
+      << said({40, "", {1e-6}})[0];
+  gas.slip = film::Gas::Slip::second;
+  machine.bearings[0].film = gas;
+  EXPECT_TRUE(said({40, "", {1e-6}}).empty());
+}

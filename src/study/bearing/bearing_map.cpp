@@ -45,6 +45,7 @@ void put_locus(io::Group& group, const std::vector<MapPoint>& locus, const std::
             "in clearances");
   table.put("y", column(locus, [](const P& p) { return -p.at.eccentricity * std::cos(p.at.attitude); }), "1",
             "in clearances");
+  table.put("min_thickness", column(locus, [](const P& p) { return p.thickness; }), "m", "least thickness of the film");
   table.put("speed_limit", column(locus, [](const P& p) { return p.at.speed_limit; }), "1",
             "Omega* = Omega sqrt(m c/load) of a rigid rotor at the border of stability; NaN: stable at every speed");
   table.put("whirl_ratio", column(locus, [](const P& p) { return p.at.whirl_ratio; }), "1",

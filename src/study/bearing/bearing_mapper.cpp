@@ -12,7 +12,8 @@ namespace whirl::study {
 namespace {
 
 void write(io::Group& g, const MapPoint& p) {
-  std::vector<double> numbers{p.at.eccentricity, p.at.attitude, p.at.sommerfeld, p.at.speed_limit, p.at.whirl_ratio};
+  std::vector<double> numbers{p.at.eccentricity, p.at.attitude,    p.at.sommerfeld,
+                              p.at.speed_limit,  p.at.whirl_ratio, p.thickness};
   for (const BearingCoefficients& c : p.coefficients)
     for (const auto* of : {&c.k, &c.b}) numbers.insert(numbers.end(), of->begin(), of->end());
   g.put("numbers", std::move(numbers), "1", "the equilibrium, then stiffness and damping of each frequency");
@@ -20,8 +21,8 @@ void write(io::Group& g, const MapPoint& p) {
 }
 MapPoint read_point(const io::Group& g) {
   const std::vector<double>& n = g.reals("numbers");
-  MapPoint p{{n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), g.reals("states")}, {}};
-  for (std::size_t k = 5; k + 8 <= n.size(); k += 8) {
+  MapPoint p{{n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), g.reals("states")}, n.at(5), {}};
+  for (std::size_t k = 6; k + 8 <= n.size(); k += 8) {
     BearingCoefficients& c = p.coefficients.emplace_back();
     for (std::size_t i = 0; i < 4; ++i) {
       c.k[i] = n[k + i];
@@ -193,7 +194,7 @@ void Mapper::refuse(double s) {
 }
 
 MapPoint Mapper::complete(const BearingEquilibrium& e) {
-  MapPoint p{e, {}};
+  MapPoint p{e, bearing_->thinnest(), {}};
   for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_->coefficients(ratio));
   return p;
 }

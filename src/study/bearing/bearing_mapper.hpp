@@ -19,6 +19,7 @@ namespace whirl::study {
 /// A point of the locus with its coefficients at all frequencies.
 struct MapPoint {
   BearingEquilibrium at;
+  double thickness = 0;  ///< least one of the film [m]
   std::vector<BearingCoefficients> coefficients;
 };
 

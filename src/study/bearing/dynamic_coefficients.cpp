@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -18,7 +17,6 @@
 #include "study/bearing/held_film.hpp"
 #include "study/common.hpp"
 #include "study/lost_points.hpp"
-#include "study/sense.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/coefficients.hpp"
@@ -179,10 +177,6 @@ StudyResult DynamicCoefficients::run(Context& context) {
   put_summary(summary, options, clearance, found);
   for (std::string& line : lost_points("no coefficients at", reasons, [&](std::size_t k) { return speeds[k]; }))
     summary.warnings.push_back(std::move(line));
-  double thinnest = std::numeric_limits<double>::infinity();
-  for (const AtSpeed& a : found)
-    if (a.found()) thinnest = std::min(thinnest, a.thickness);
-  warn_of_slip(summary, train.supports[which], thinnest);
   for (std::size_t k = 0; k < found.size(); ++k)
     if (found[k].centre) summary.warnings.push_back(fmt::format("{}: {}", speeds[k], of_the_centre(found[k])));
   for (std::string& line : lost_motions(enforced_of(found), speeds, options.all_frequencies(), options.amplitudes))

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
-#include <span>
 #include <string_view>
 
 #include "study/bars/film_mesh.hpp"
@@ -16,7 +14,6 @@
 #include "study/bearing/held_film.hpp"
 #include "study/common.hpp"
 #include "study/lost_points.hpp"
-#include "study/sense.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
@@ -292,14 +289,6 @@ StudyResult GasBearing::run(Context& context) {
   put_gas_fields(group, options, curves);
   put_knudsen(group, *film::find<film::Gas>(support.film), support.lubricant.viscosity);
   summary.points = static_cast<long>(found(curves) + found(equilibria));
-  const std::span<const GasQuantity> quantities = gas_quantities();
-  const auto thickness = static_cast<std::size_t>(
-      std::ranges::find(quantities, std::string_view("min_thickness"), &GasQuantity::name) - quantities.begin());
-  double thinnest = std::numeric_limits<double>::infinity();
-  for (const auto* rows : {&curves, &equilibria})
-    for (const GasRow& row : *rows)
-      if (row.found()) thinnest = std::min(thinnest, row.values.at(thickness));
-  warn_of_slip(summary, support, thinnest);
   const auto warn = [&](const std::vector<GasRow>& rows, const std::function<std::string(std::size_t)>& words) {
     for (std::string& line : lost_points("no film at", reasons_of(rows), words))
       summary.warnings.push_back(std::move(line));

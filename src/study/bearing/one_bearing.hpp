@@ -53,6 +53,8 @@ public:
   /// Of the equilibrium found last, at the frequency ratio omega/Omega; it matters for films with own states only.
   /// Source: van de Vrande (2001) secs. 4.3 and 4.4.
   [[nodiscard]] BearingCoefficients coefficients(double ratio);
+  /// Least thickness [m] of the film of the equilibrium found last.
+  [[nodiscard]] double thinnest() { return film_->least_thickness(motion_, states_); }
   /// Of the equilibrium found last; empty arrays if the film knows no pressure.
   [[nodiscard]] BearingProfile profile();
   /// W along and across a squeeze velocity in +x with the shaft at rest, F* = -|v_s*| W, of a film without own states;

@@ -16,6 +16,7 @@
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
 #include "study/pieces.hpp"
+#include "study/sense.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 
@@ -63,13 +64,14 @@ struct Sweep {
 
   // Of the journal there, in clearances.
   [[nodiscard]] std::array<double, 2> place() const {
-    const auto column = [&](std::string_view name) {
-      for (std::size_t c = 0; c < thd_columns().size(); ++c)
-        if (thd_columns()[c].name == name) return rows[last()][c];
-      throw core::Bug("a column of the table is missing");
-    };
-    const double e = column("eccentricity"), angle = column("attitude");
+    const double e = at(last(), "eccentricity"), angle = at(last(), "attitude");
     return {e * std::cos(angle), e * std::sin(angle)};
+  }
+
+  [[nodiscard]] double at(std::size_t row, std::string_view column) const {
+    for (std::size_t c = 0; c < thd_columns().size(); ++c)
+      if (thd_columns()[c].name == column) return rows[row][c];
+    throw core::Bug("a column of the table is missing");
   }
 
   void read(const io::Group& from) {
@@ -109,6 +111,25 @@ std::vector<double> last_state(const io::Group& from, const thermal::Rows& rows)
     core::fill(all.get(), values);
   const core::ReadArray a(all.get());
   return {a.data(), a.data() + a.size()};
+}
+
+// Warns of the largest Reynolds number, of fluid at the mean temperature of the film, that is computed as laminar.
+void warn_of_vortices(io::StudySummary& summary, const ThdOptions& options, const system::Bearing& bearing,
+                      const Sweep& sweep) {
+  if (options.turbulence != thermal::Turbulence::laminar) return;
+  const thermal::Fluid fluid = thermal::make_fluid(options.fluid);
+  const film::Geometry& g = *bearing.geometry;
+  double most = 0, speed = 0;
+  for (std::size_t k = 0; k < sweep.rows.size(); ++k) {
+    const double t = sweep.at(k, "mean_temperature"), omega = options.speeds[k].value;
+    const double reynolds = fluid.rho(options.ambient.pressure, t) * std::abs(omega) * g.radius * g.clearance /
+                            thermal::viscosity(fluid.viscosity, t).value;
+    if (reynolds > most) {
+      most = reynolds;
+      speed = omega;
+    }
+  }
+  warn_of_reynolds(summary, bearing.name, g, most, speed);
 }
 
 }  // namespace
@@ -207,6 +228,7 @@ StudyResult Thd::run(Context& context) {
   if (std::ranges::any_of(sweep.reasons, [](const std::string& why) { return !why.empty(); }))
     table.put("reason", sweep.reasons, "why there is no film at the speed; empty: there is one");
   summary.points = static_cast<long>(std::ranges::count(sweep.reasons, ""));
+  warn_of_vortices(summary, options, context.machine.bearings[which], sweep);
   // A speed without its film was asked for in vain: what there is of the others is kept, and the run says so.
   std::vector<std::string> lost;
   for (std::size_t k = 0; k < sweep.rows.size(); ++k)
