@@ -78,8 +78,8 @@ class Scene:
             steps.append(self.grid(name, distance.shape, items[0], [("distance from the axis", items[1])]) + f'<Time Value="{time:.9g}"/></Grid>')
         self.blocks.append((name, steps))
 
-    def bores(self, times):
-        """The film pads where they are, with what results.h5 has of them."""
+    def bores(self, times, moved):
+        """The film pads with what results.h5 has of them, moved(z) = (x, y) away from where they are: to the shaft that is drawn larger."""
         def visit(path, group):
             if not isinstance(group, h5py.Group) or "node_xyz" not in group:
                 return
@@ -87,7 +87,10 @@ class Scene:
             fields = [(f"{n} [{group[n].attrs.get('unit', '1')}]", self.item(group.file.filename, group[n].name, shape))
                       for n in ("pressure", "thickness") if n in group]
             name = path.removeprefix("films/").replace("/", " ")
-            grid = self.grid(name, shape, self.item(group.file.filename, f"{group.name}/node_xyz", group["node_xyz"].shape), fields)
+            corners, key = group["node_xyz"][...].astype(np.float32), f"{len(self.blocks)}/xyz"
+            corners[..., :2] += moved(corners[..., 2].mean())
+            self.data[key] = corners
+            grid = self.grid(name, shape, self.item(self.data.filename, key, corners.shape), fields)
             self.blocks.append((name, [f'{grid}<Time Value="{time:.9g}"/></Grid>' for time in times]))
 
         self.study.group.visititems(visit)
@@ -115,14 +118,15 @@ def write(study, shapes=6, phases=24, reach=0.1):
             at, to_frequency, unit = at_words(study, speed)
             moving = [np.real(np.exp(2j * np.pi * turn)[:, None] * line) for line in (x, y)]
             scene.shaft(f"mode {shape.mode} {at}: {shape.frequency * to_frequency:.4g} {unit}", z, *moving, turn, factor)
-    times = turn if tables else [0.0]
+    times, moved = turn if tables else [0.0], lambda z: np.zeros(2)
     if study.has("nodes/z", "nodes/y"):
         z, y = study.get("nodes/z"), study.get("nodes/y")
         x = study.get("nodes/x", np.zeros_like(y))
         largest = np.hypot(x, y).max()
         factor = reach * np.ptp(z) / largest if largest > 0 else 1.0
+        moved = lambda at: (factor - 1) * np.array([np.interp(at, z, x), np.interp(at, z, y)])  # noqa: E731
         scene.shaft(f"sag, drawn {factor:.3g} times", z, np.tile(x, (len(times), 1)), np.tile(y, (len(times), 1)), times, factor)
-    scene.bores(times)
+    scene.bores(times, moved)
     return scene.write()
 
 
