@@ -4,7 +4,7 @@
 
 writes STUDY.scene.xdmf and STUDY.scene.h5 beside results.h5, for each study that has a sag or shapes. ParaView's time is the part of a
 turn of the mode that has passed. Deflections are drawn larger, by the factor in the name of the block: a reach of 0.1 makes the largest
-one a tenth of the length of the shaft.
+one a tenth of the length of the shaft. Discs, added masses and the bores of hollow shafts are not drawn.
 """
 import argparse
 import pathlib

@@ -12,7 +12,7 @@
 
 namespace whirl::io {
 
-/// How the names of grids of films end that are unrolled onto a plane.
+/// A film that is unrolled onto a plane has a name that ends with this.
 inline constexpr std::string_view unwrapped = " unwrapped";
 
 /// A structured mesh of n0 x n1 (x n2) nodes whose fields are datasets of that shape, or, where they belong to its

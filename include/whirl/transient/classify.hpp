@@ -58,8 +58,8 @@ struct Verdict {
 /// distances between its successive points drift over the record, by more than 1 % and more than five standard errors
 /// of a straight line through the logarithms of `course`: a spiral on its way into a cycle, or away from one, has zero
 /// exponents within their bars for long.
-/// A state of rest about which something grows is no fixed point: the motion has not left it yet. What grows about the
-/// equilibrium is told of every motion that is unsettled.
+/// A state of rest about which something grows is no fixed point: the motion has not left it yet. The
+/// verdict of an unsettled motion also says what grows about the equilibrium.
 /// A motion that external forces drive is `driven`: where it is at the same shaft angle says nothing of it, and its
 /// exponents, if there are any, tell only whether it forgets where it began.
 [[nodiscard]] Verdict classify(const Evidence& evidence);

@@ -26,7 +26,7 @@ std::string place_of(const io::Bifurcation& b) {
   return io::reading(with_bar(b.value, b.uncertainty, b.unit));
 }
 
-// Of the motion that is born, in Hz; of a fold that of the cycle.
+// Frequency [Hz] of the motion that is born. At a fold it is the frequency of the cycle.
 io::Quantity frequency_of(const io::Bifurcation& b) {
   const double omega = more_of(b, "whirl_frequency_rad_s"), bar = more_of(b, "uncertainty_whirl_frequency_rad_s");
   constexpr double turn = 2 * std::numbers::pi;

@@ -27,7 +27,7 @@ namespace whirl::study {
 /// they decide on no verdict. The same shaft with every segment cut has others.
 [[nodiscard]] bool is_of_elements(std::complex<double> lambda, double resolved_to);
 
-/// What the verdict of such a mode says; whoever sums up modes passes over it.
+/// The verdict of such a mode. Summaries of modes leave it out.
 inline constexpr const char* not_resolved = "not resolved";
 
 }  // namespace whirl::study

@@ -46,7 +46,7 @@ public:
   void follow();
   /// The first place on the locus where `margin` changes its sign; the bearing is left there. Not collective.
   [[nodiscard]] std::optional<MapPoint> find(const std::function<double(const BearingEquilibrium&)>& margin);
-  /// A load that the map does not reach is refused: whoever asked for it would look for its values in vain.
+  /// Refuses a load that the map does not reach, with the reason: the results would have no values for it.
   void load();
   /// A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A soft
   /// film or one with own states is another one at every speed: its thresholds belong to branches of equilibria.

@@ -16,6 +16,18 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // closed form.
 constexpr double vertical = 1e-13, vertical_relaxed = 1e-11;
 
+// What `find` returns; nothing where no film can be evaluated.
+template <class Find>
+std::optional<BearingEquilibrium> if_there_is_a_film(Find&& find) {
+  try {
+    return find();
+  } catch (const core::DomainError&) {
+    return std::nullopt;
+  } catch (const core::NotConverged&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 OneBearing::OneBearing(const system::Support& support, double speed)
@@ -59,9 +71,9 @@ std::optional<BearingEquilibrium> OneBearing::carrying(double eccentricity, cons
     e.sommerfeld = f[1];
     return std::atan2(f[0], f[1]);
   };
-  double before = near.attitude, d = 0, angle = before;
-  bool found = false;
-  try {
+  return if_there_is_a_film([&]() -> std::optional<BearingEquilibrium> {
+    double before = near.attitude, d = 0, angle = before;
+    bool found = false;
     double d_before = miss(before);
     angle = before + d_before;
     for (int i = 0; i < 40 && !found; ++i) {
@@ -79,31 +91,23 @@ std::optional<BearingEquilibrium> OneBearing::carrying(double eccentricity, cons
     e.attitude = std::atan2(motion_.position[0], -motion_.position[1]);
     e.states = states_;
     set_border(e);
-  } catch (const core::DomainError&) {
-    return std::nullopt;
-  } catch (const core::NotConverged&) {
-    return std::nullopt;
-  }
-  return e;
+    return e;
+  });
 }
 
 std::optional<BearingEquilibrium> OneBearing::carrying(const JournalLocus::Node& node) {
-  BearingEquilibrium e;
-  states_ = node.states;
-  motion_.position = {node.place[0] * clearance_, node.place[1] * clearance_, 0, 0};
-  try {
+  return if_there_is_a_film([&] {
+    BearingEquilibrium e;
+    states_ = node.states;
+    motion_.position = {node.place[0] * clearance_, node.place[1] * clearance_, 0, 0};
     film_->evaluate(motion_, states_, rest_, film::Need::force, response_);
     e.eccentricity = node.eccentricity();
     e.attitude = std::atan2(node.place[0], -node.place[1]);
     e.sommerfeld = response_.journal.force[1] / load_;
     e.states = states_;
     set_border(e);
-  } catch (const core::DomainError&) {
-    return std::nullopt;
-  } catch (const core::NotConverged&) {
-    return std::nullopt;
-  }
-  return e;
+    return std::optional(e);
+  });
 }
 
 // The border of stability of a rigid rotor: it whirls freely at nu Omega, det(k - k_e + i nu b) = 0 with the effective
