@@ -2,10 +2,10 @@
 import numpy as np
 
 from .bifurcation import Followed, legend
-from .bore import distance_in_words, draw_clearance
+from .bore import distance_in_words, draw_clearance, outline
 from .canvas import Line2D, plt
 from .curves import periodic
-from .style import DASHED, GREY, INK, ROTATION, Y, mark, mark_end, parameter_label, save
+from .style import DASHED, GREY, INK, ROTATION, Y, grid_of, mark, mark_end, parameter_label, save
 from .units import person
 
 
@@ -33,6 +33,14 @@ def row_of_panels(rows, count):
     """A panel by itself fills the page instead of standing at one side of it."""
     size = (max(7.2, 2.75 * count), 2.55 * rows + 1.25) if rows * count > 1 else (5.8, 5.0)
     return plt.subplots(rows, count, figsize=size, squeeze=False)
+
+
+def places_in_rows(count):
+    """A panel for each of `count` places, at most four in a row: more would be too small to read on a page."""
+    if count <= 4:
+        figure, axes = row_of_panels(1, count)
+        return figure, list(axes[0])
+    return grid_of(count, 2.75, 2.9, 4)[:2]
 
 
 def stability(study, orbits):
@@ -159,10 +167,10 @@ def draw_locus(study):
     if max(np.ptp(x, axis=0).max(), np.ptp(y, axis=0).max()) <= 1e-4 * max(np.abs(x).max(), np.abs(y).max(), 1e6 * np.max(clearance)):
         return []
     names = study.bearings(x.shape[1])
-    figure, axes = row_of_panels(1, len(names))
+    figure, axes = places_in_rows(len(names))
     parameter = branch.parameter
     norm = plt.Normalize(parameter.min(), parameter.max() if np.ptp(parameter) else parameter.min() + 1)
-    for b, (axis, name) in enumerate(zip(axes[0], names)):
+    for b, (axis, name) in enumerate(zip(axes, names)):
         if not draw_clearance(axis, study, b, (x[:, b], y[:, b])):
             square(axis, x[:, b], y[:, b])
         turn_arrow(axis)
@@ -185,10 +193,14 @@ def draw_positions(study):
         return []
     x, y = (np.atleast_1d(study.get(f"bearings/{k}")) for k in "xy")
     names, load = study.bearings(len(x)), study.get("bearings/load")
-    figure, axes = row_of_panels(1, len(names))
-    for b, (axis, name) in enumerate(zip(axes[0], names)):
-        if not draw_clearance(axis, study, b, (x[b:b + 1] * 1e6, y[b:b + 1] * 1e6)):
-            square(axis, np.array([0, x[b] * 1e6]), np.array([0, y[b] * 1e6]))
+    # Without a wall the place of a journal is a number, which the tables have.
+    bores = [b for b in range(len(names)) if outline(study, b)]
+    if not bores:
+        return []
+    figure, axes = places_in_rows(len(bores))
+    for axis, b in zip(axes, bores):
+        name = names[b]
+        draw_clearance(axis, study, b, (x[b:b + 1] * 1e6, y[b:b + 1] * 1e6))
         turn_arrow(axis)
         axis.plot([0, x[b] * 1e6], [0, y[b] * 1e6], color=INK, linewidth=1.0)
         axis.plot(x[b] * 1e6, y[b] * 1e6, "o", color=Y, markersize=6, markeredgecolor="white")
