@@ -264,7 +264,8 @@ def draw_cycles(study):
             finish(axis, names[b], f"{direction}, max and min [{unit}]", parameter_label(study))
             mark_walls(axis, study, b, scale, direction)
             over_speed(axis, study)
-        note = f"largest and smallest {direction} ({words}) over one cycle: {study.shown}"
+        meant = f"{direction} ({words})" if study.in_space else direction
+        note = f"largest and smallest {meant} over one cycle: {study.shown}"
         unbalance = study.attribute("unbalance")
         files += save(figure, study, f"cycles-{words}", f"{note}; unbalance {unbalance}" if unbalance else note, legend([branch]))
     return files + draw_nodes(study, branch)
@@ -317,8 +318,8 @@ def draw_together(results):
                or (s.kind == "equilibrium_branch" and s.has("branch/parameter", "branch/y"))]
     label = parameter_label(studies[0]) if studies else ""
     studies = [s for s in studies if parameter_label(s) == label]
-    if not studies or all(s.kind == "equilibrium_branch" for s in studies):
-        return []
+    if len(studies) < 2 or all(s.kind == "equilibrium_branch" for s in studies):
+        return []  # one branch by itself has this picture already
     branches = without_twins([Followed(s) for s in studies])
     tables = [b.column("y_max" if b.study.kind == "cycle_branch" else "y") for b in branches]
     count = min(t.shape[1] for t in tables)
@@ -340,5 +341,5 @@ def draw_together(results):
         finish(axis, names[b], f"y, max and min [{unit}]", label)
         mark_walls(axis, studies[0], b, scale)
         over_speed(axis, studies[0])
-    return save(figure, results.whole("all branches" if len(studies) > 1 else studies[0].name), "bifurcations",
-                f"y (vertical): {studies[0].shown}", legend(branches, handles))
+    return save(figure, results.whole("all branches"), "bifurcations",
+                ("y (vertical): " if studies[0].in_space else "y: ") + studies[0].shown, legend(branches, handles))

@@ -31,18 +31,23 @@ class Subject(whirl.Study):
         return [str(w) for w in found] if isinstance(found, list) else []
 
     @property
+    def in_space(self):
+        """Whether x and y are directions in space; another system than a rotor shows two of its states as x and y."""
+        return "places/name" not in self.group
+
+    @property
     def shown(self):
         """What the positions of branches and motions are."""
-        return str(self.group["places/name"].attrs["description"]) if "places/name" in self.group else "journal relative to the bearing centre"
+        return str(self.group["places/name"].attrs["description"]) if not self.in_space else "journal relative to the bearing centre"
 
     @property
     def micro(self):
         """Factor and unit of orbits: micrometres, or as they are where another system than a rotor shows them."""
-        return (1, "1") if "places/name" in self.group else (1e6, "\u00b5m")
+        return (1e6, "\u00b5m") if self.in_space else (1, "1")
 
     def measure(self, values):
         """Factor and unit in which positions read best; another system than a rotor need not show lengths."""
-        return (1, "1") if "places/name" in self.group else length_unit(values)
+        return length_unit(values) if self.in_space else (1, "1")
 
     def file(self, what):
         """Where a picture of this study goes, without its ending."""

@@ -15,7 +15,7 @@ def is_plain(turning, whirl):
 
 def draw(study):
     """A panel for each mode: z upwards over the speed, blue where the node turns backward, red where it turns forward."""
-    if not study.has("whirl_map/turning", "spectrum/mode") or len(np.unique(study.get("spectrum/speed"))) < 2:
+    if not study.has("whirl_map/turning", "spectrum/mode") or len(np.unique(study.get("spectrum/speed"))) < 3:  # two speeds are no course
         return []
     z, turning = study.get("whirl_map/z"), study.get("whirl_map/turning")
     number, at = study.get("spectrum/mode"), study.get("spectrum/speed")
@@ -34,8 +34,8 @@ def draw(study):
         image = axis.pcolormesh(speed * to_speed, z, turns.T, cmap="RdBu_r", vmin=-1, vmax=1, shading="nearest", rasterized=True)
         for place, _ in bearing_places(study, z):
             axis.axhline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)))
-        word = whirl[-1] if len(set(whirl)) == 1 else f"{whirl[0]} to {whirl[-1]}"
-        axis.set_title(f"{mode}: {word}\n{frequency[0] * to_frequency:.5g} to {frequency[-1] * to_frequency:.5g} {unit}", fontsize=8)
+        word = whirl[-1] if whirl[0] == whirl[-1] else f"{whirl[0]} to {whirl[-1]}"
+        axis.set_title(f"{mode}: {word}\n{frequency[0] * to_frequency:.4g} to {frequency[-1] * to_frequency:.4g} {unit}", fontsize=8)
         axis.grid(False)
     for axis in axes[-3:]:
         axis.set_xlabel(speed_label)
