@@ -146,7 +146,7 @@ def draw_shaft(results, deck, segments):
     edges = [0, *[k for k in range(1, len(rotors)) if rotors[k] != rotors[k - 1]], len(rotors)]
     for a, b in zip(edges, edges[1:]):
         if rotors[a]:
-            axis.annotate(rotors[a], (0.5 * (z[a] + z[b]), 1.5 * high), ha="center", va="bottom", fontsize=9, fontweight="bold", color=INK)
+            axis.annotate(rotors[a], (0.5 * (z[a] + z[b]), 1.58 * high), ha="center", va="bottom", fontsize=9, fontweight="bold", color=INK)
         if a:
             axis.plot([z[a], z[a]], [-1.2 * high, 1.5 * high], color=GREY, linewidth=0.8, linestyle=":", zorder=6)
     planes = planes_of(deck)

@@ -55,7 +55,7 @@ CAPTIONS = {
     "conditions": "Condition of the eigenvalues.", "reduction-errors": "Errors of reduced shafts.", "reduction-orbits": "Orbits of whole and reduced shafts.",
     "reduction-maps": "Entries of the reduced matrices.", "whirl-map": "Sense of whirl of each mode along the shaft, over the speed.",
     "gas-curves": "Load, attitude, flow and losses of the gas film over the eccentricity.", "gas-isobars": "Pressure of the gas film.",
-    "gas-meshes": "Load over the mesh, by the model of the orifices.", "gas-knudsen": "Thickness of the film at which slip has to be counted.",
+    "gas-meshes": "Load over the mesh, by the model of the orifices.", "gas-map": "Load and flow over clearance and diameter of the orifices.", "gas-knudsen": "Thickness of the film at which slip has to be counted.",
     "line-modes": "Modes of torsion or along the axis.", "transfer": "Transfer functions of the motion under random forces.", "coherence": "Coherence: how much of the motion is linear in the forces.",
     "excitation": "Spectrum of the random forces.", "thd-iterations": "Convergence of film and solids.", "thd-meshes": "Results of the film with heat over the mesh.",
     "thd-budget": "Where the heat comes from and goes to, over the speed.", "thd-effective": "How well one temperature stands for the film.",
@@ -116,9 +116,13 @@ def anchor(name):
 def caption(what, subject=None):
     """What a picture shows, by the end of its name, `shapes-3d-1500`: its kind, and a place or a speed."""
     kind = re.sub(r"-?\d+$", "", what)
+    if what.startswith("cycles-") and not subject.in_space:  # x and y are states of another system than a rotor
+        return f"Largest and smallest {'y' if what == 'cycles-vertical' else 'x'} over a cycle."
     if what in CAPTIONS or kind in CAPTIONS:
         words, number = CAPTIONS.get(what) or CAPTIONS[kind], what.removeprefix(kind).lstrip("-")
         at = kind.startswith("shapes") and what not in CAPTIONS and number
+        if kind.startswith("response") and number:  # five places in a picture
+            return f"{words.removesuffix('.')}, part {number}."
         return f"{words.removesuffix('.')}, at {number} {subject.attribute('speed_unit', 'rad/s')}." if at and subject is not None else words
     for head, told in BY_PLACE.items():
         if what.startswith(head):
@@ -246,7 +250,7 @@ def options_in_force(results):
     for entry in deck.get("studies") or []:
         for kind, options in entry.items() if isinstance(entry, dict) else []:
             rows = [[k, plainly(v)] for k, v in (options or {}).items() if v not in ([], "", None)]
-            out.append(show(tables.Table(f"{kind.replace('_', ' ')} {(options or {}).get('name', '')}".strip(), ["option", "value"], rows), folded=True))
+            out.append(show(tables.Table(f"{(options or {}).get('name', '')} ({kind.replace('_', ' ')})".strip(), ["option", "value"], rows), folded=True))
     return "\n".join(out)
 
 

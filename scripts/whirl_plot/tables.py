@@ -48,7 +48,7 @@ def inputs(results):
     lubricants = deck.get("lubricants") or {}
     for name, b in (deck.get("bearings") or {}).items():
         g, f, p = b.get("geometry") or {}, b.get("film") or {}, b.get("pedestal") or {}
-        film = ", ".join(str(f[k]).replace("_", " ") for k in ("type", "cavitation", "turbulence") if k in f)
+        film = ", ".join(("cavitation " if k == "cavitation" else "") + str(f[k]).replace("_", " ") for k in ("type", "cavitation", "turbulence") if k in f)
         film += ", " + " \u00d7 ".join(map(str, f["cells"])) + " cells" if isinstance(f.get("cells"), list) else ""
         shape = ", ".join([str(g.get("type", "")).replace("_", " ")] + [f"{k} {quantity(g[k])}" for k in ("arc", "preload", "offset")
                                                                         if k in g and str(g[k]) not in ("0", "0 m")]).strip(", ")
