@@ -55,6 +55,14 @@ class AnswerTable(typing.NamedTuple):
             return [row[k].text for row in self.rows]
         return np.array([np.nan if v is None else v for v in values])
 
+    def __str__(self):
+        """The table as lines of text."""
+        rows = [self.heads] + [[c.text for c in row] for row in self.rows]
+        numbers = [any(row[k].value is not None for row in self.rows) for k in range(len(self.columns))]
+        width = [max(len(row[k]) for row in rows) for k in range(len(self.columns))]
+        lines = ["  ".join(cell.rjust(w) if n else cell.ljust(w) for cell, w, n in zip(row, width, numbers)).rstrip() for row in rows]
+        return "\n".join([self.caption, *("  " + line for line in lines), *([f"  {self.note}"] if self.note else [])])
+
     def _repr_html_(self):
         head = "".join(f"<th>{html.escape(h)}</th>" for h in self.heads)
         body = "".join("<tr>" + "".join(f"<td>{html.escape(c.text)}</td>" for c in row) + "</tr>" for row in self.rows)
@@ -64,6 +72,10 @@ class AnswerTable(typing.NamedTuple):
 class Answer(typing.NamedTuple):
     sentences: list
     tables: list
+
+    def __str__(self):
+        """Sentences and tables as text."""
+        return "\n".join([*self.sentences, *map(str, self.tables)])
 
     def _repr_html_(self):
         return "".join(f"<p>{html.escape(s)}</p>" for s in self.sentences) + "".join(t._repr_html_() for t in self.tables)

@@ -217,6 +217,8 @@ def draw_equilibria(study):
     branch = Followed(study)
     x, y = branch.column("x"), branch.column("y")
     names, growth, shown = study.bearings(x.shape[1]), damped(study), distinct(x, y)
+    if growth is not None and not np.any(x) and not np.any(y):
+        shown = []  # nothing but the origin, without gravity and films
     figure, axes, _ = grid_of(len(shown) + (growth is not None))
     scale, unit = study.measure(np.concatenate([x, y]))
     for axis, b in zip(axes, shown):
@@ -234,9 +236,9 @@ def draw_equilibria(study):
         finish(axis, "least stable eigenvalue", "real part [1/s]", parameter_label(study))
         least_span(axis, np.abs(growth).max())
         over_speed(axis, study)
-    directions = [Line2D([], [], color=Y, label="y, vertical"), Line2D([], [], color=X, label="x, horizontal")]
+    directions = [Line2D([], [], color=Y, label="y, vertical"), Line2D([], [], color=X, label="x, horizontal")] if shown else []
     behind = growth is not None and sum(kind in ("hopf", "fold") for kind in branch.kinds) > 1
-    return save(figure, study, "equilibria", study.shown + ("; marks at zero: an eigenvalue crosses, perhaps not the least stable one" if behind else ""),
+    return save(figure, study, "equilibria", (study.shown if shown else "the journals stay at their centres") + ("; marks at zero: an eigenvalue crosses, perhaps not the least stable one" if behind else ""),
                 legend([branch], directions))
 
 

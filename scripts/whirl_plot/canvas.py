@@ -59,3 +59,12 @@ def Line2D(*points, **look):  # noqa: N802
     """A line of matplotlib, for legends."""
     from matplotlib.lines import Line2D as Line
     return Line(*points, **look)
+
+
+def plain_numbers(axis):
+    """Numbers such as 200, 500 and 1000 along a logarithmic axis of few decades."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 1e3 * low else (1,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.12g}"))
+    axis.set_minor_formatter(NullFormatter())

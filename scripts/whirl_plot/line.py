@@ -3,6 +3,7 @@ import numpy as np
 
 from .canvas import Line2D, plt
 from .style import COLOURS, save
+from .units import digits
 
 SHOWN = 6
 
@@ -18,8 +19,9 @@ def draw(study):
     for k, (f, shape) in enumerate(zip(frequency[:SHOWN], shapes)):
         colour = COLOURS[k % len(COLOURS)]
         axis.plot(z, shape, color=colour, linewidth=1.4, marker=".", markersize=4)
-        handles.append(Line2D([], [], color=colour, marker=".", label=f"{f:.4g} rad/s"))
+        handles.append(Line2D([], [], color=colour, marker=".", label=f"{k + 1}: {digits(f / (2 * np.pi), 5)} Hz"))
     axis.axhline(0, color="black", linewidth=0.5)
     axis.set_xlabel("z [m]")
-    axis.set_ylabel("twist or displacement, largest one [-]")
-    return save(figure, study, "line-modes", "undamped modes about or along the axis; no bearings", handles=handles)
+    twists = "twist" in str(study.group["line/shape"].attrs.get("description", ""))
+    axis.set_ylabel(("angle of twist" if twists else "axial displacement") + ", scaled to 1 [-]")
+    return save(figure, study, "line-modes", "undamped modes; bearings take no part", handles=handles)

@@ -36,7 +36,7 @@
         const select = make('select', label);
         choose.of.forEach((words, k) => make('option', select, {value: k}, words));
         select.onchange = () => { this.option = +select.value; this.whole(); this.refresh(); };
-      }
+      } else if (choose && choose.of.length) make('span', bar, {className: 'style'}, choose.of[0]);
       const names = new Map();
       // Curves first, then marks; a curve that is solid anywhere is solid here.
       for (const marked of [false, true]) {

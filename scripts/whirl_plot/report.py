@@ -100,7 +100,7 @@ def show(table, folded=False):
     right = [all(numeric(row[k]) for row in table.rows) for k in range(len(table.head))]
     # Short texts stay on one line, long ones keep a width in which they can be read.
     length = [max((len(str(row[k])) for row in table.rows), default=0) for k in range(len(table.head))]
-    mark = [" class=n" if r else " class=short" if n <= 26 else " class=long" if n > 30 else "" for r, n in zip(right, length)]
+    mark = [" class=n" if r else " class=short" if n <= 30 else " class=long" for r, n in zip(right, length)]
     head = "".join(f"<th{m}>{escape(h)}</th>" for m, h in zip(mark, table.head))
     body = "".join("<tr>" + "".join(f"<td{m}>{marked(c, 'verdict' in (h, row[0]))}</td>" for m, h, c in zip(mark, table.head, row)) + "</tr>" for row in table.rows)
     note = f"<p class=note>{escape(table.note)}</p>" if table.note else ""
@@ -219,8 +219,9 @@ def at_service_speed(results):
         if unit == "K" and value is not None:
             value, unit = value - 273.15, "\u00b0C"
         shown = "" if value is None else reading(value, bar, unit)
-        rows.append([fact.get("what", ""), shown, fact.get("place", ""), fact.get("mark", ""), fact.get("study") or ""])
-    table = tables.Table("", ["", "value", "place", "", "study"], rows)
+        place = f"at {fact['place']}" if fact.get("place") else ""
+        rows.append([fact.get("what", ""), ", ".join(w for w in (f"{shown} {place}".strip(), fact.get("mark", "")) if w), fact.get("study") or ""])
+    table = tables.Table("", ["", "", "study"], rows)
     return f"<h2 id=service>At the service speed, {escape(with_bar(service.get('value'), None))} {escape(service.get('unit', ''))}</h2>{show(table)}"
 
 

@@ -3,6 +3,7 @@ import numpy as np
 
 from .canvas import Line2D
 from .style import GREY, grid_of, length_unit, mark_service, save, span_of
+from .units import digits
 
 RESPONSE_COLUMN = {"bearings": "bearings/semi_major", "node": "response/semi_major"}
 
@@ -52,31 +53,38 @@ def draw_together(results):
     scale, length = length_unit(np.concatenate([amplitude for s in studies for _, _, amplitude in places(s)]))
     per_unit = {"rpm": 30 / np.pi, "Hz": 0.5 / np.pi}.get(unit, 1)
     handles = [Line2D([], [], color=s.colour,
-                      label=f"{s.name}, {s.attribute('acceleration') * per_unit:+.3g} {unit.removesuffix('/s')}/s".replace("-", "\u2212") + "\u00b2" * unit.endswith("/s")) for s in studies]
-    linear = started = False
+                      label=f"{s.name}, {'+' * (s.attribute('acceleration') > 0)}{digits(s.attribute('acceleration') * per_unit, 3)} {unit.removesuffix('/s')}/s" + "\u00b2" * unit.endswith("/s")) for s in studies]
+    linear = started = cut = False
     for axis, (title, key, _) in zip(axes, panels):
+        steadily = passing = 0.0
         for speed, major in steady(results, key):
             axis.plot(speed * per_unit, major * scale, color=GREY, linewidth=2.6, alpha=0.45, zorder=1)
             linear = True
+            steadily = max(steadily, np.nanmax(major) * scale)
         for study in studies:
             for _, other, amplitude in places(study):
                 if other == key:
                     speed, starting = study.get("run_up/speed"), study.get("run_up/start_transient")
                     free = 0 if starting is None else int(np.count_nonzero(starting))
+                    free = free if free < len(speed) else 0  # it never fades, which a warning says
                     # Whirl at half the speed is farther out in every other revolution, which would be a band of saw-teeth.
                     amplitude = np.maximum(amplitude, np.append(amplitude[1:], 0))
                     axis.plot(speed[max(free - 1, 0):], amplitude[max(free - 1, 0):] * scale, color=study.colour, linewidth=1.2)
                     axis.plot(speed[:free], amplitude[:free] * scale, color=study.colour, linewidth=0.8, alpha=0.35)
                     started = started or free > 1
+                    passing = max(passing, np.nanmax(amplitude) * scale)
         ends = np.concatenate([study.get("run_up/speed") for study in studies])
         axis.set_xlim(*span_of(ends.min(), ends.max()))
         axis.set_ylim(bottom=0)
+        if 0 < 4 * passing < steadily:  # a peak that a run-up never reaches would hide it
+            axis.set_ylim(top=2 * passing)
+            cut = True
         mark_service(axis, studies[0], unit)
         axis.set_title(title)
         axis.set_xlabel(f"speed [{unit}]")
         axis.set_ylabel(f"amplitude, 0-peak [{length}]")
     if linear:
-        handles.append(Line2D([], [], color=GREY, linewidth=2.6, alpha=0.45, label="steady, linear"))
+        handles.append(Line2D([], [], color=GREY, linewidth=2.6, alpha=0.45, label="steady, linear" + ", cut off above" * cut))
     if started:
         handles.append(Line2D([], [], color=GREY, linewidth=0.8, alpha=0.6, label="start: free vibration fades"))
     unbalance = studies[0].attribute("unbalance", "")

@@ -157,18 +157,22 @@ def draw_modes(study, shown=12):
     files, found = [], list(tables_of(study))
     for speed, z, shapes in found:
         # What dies within a turn is no vibration; unless nothing else is there.
-        shapes = [s for s in shapes if not s.decrement > OVERDAMPED] or shapes
+        drawn = [s for s in shapes if not s.decrement > OVERDAMPED] or shapes
+        left = [str(s.mode) for s in shapes if s.decrement > OVERDAMPED] if len(drawn) < len(shapes) else []
+        hidden = f"; not drawn: mode{'s' * (len(left) > 1)} {', '.join(left)}, log. decrement above {OVERDAMPED:g}" if left else ""
+        shapes = drawn
         suffix = f"-{speed * speed_axis(study.attribute('speed_unit', 'rad/s'))[0]:.0f}" if len(found) > 1 else ""
-        files += draw_flat(study, speed, z, shapes[:shown], suffix) + draw_in_space(study, speed, z, shapes[:shown], suffix)
+        files += draw_flat(study, speed, z, shapes[:shown], suffix, hidden) + draw_in_space(study, speed, z, shapes[:shown], suffix)
     return files
 
 
 def at_words(study, speed):
-    to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
-    return f"at {speed_label.split(' [')[0]} {speed * to_speed:.0f} {study.attribute('speed_unit', 'rad/s')}", to_frequency, unit
+    """Speed in the unit of the deck; frequencies in Hz, as on the screen."""
+    unit = study.attribute("speed_unit", "rad/s")
+    return f"at speed {speed * speed_axis(unit)[0]:.0f} {unit}", 1 / (2 * np.pi), "Hz"
 
 
-def draw_flat(study, speed, z, shapes, suffix):
+def draw_flat(study, speed, z, shapes, suffix, hidden=""):
     bearings = bearing_places(study, study.get("shapes/z"))
     at, to_frequency, unit = at_words(study, speed)
     figure, axes, grid = grid_of(len(shapes), height=1.95, sharex=True, sharey=True)
@@ -187,7 +191,7 @@ def draw_flat(study, speed, z, shapes, suffix):
         visible = [a for a in grid[:, column] if a.get_visible()]
         visible[-1].set_xlabel("z [m]")
         visible[-1].tick_params(labelbottom=True)
-    words = with_either(f"{at}; shaded: largest excursion over a turn, scaled to 1 where it is largest; triangles: bearings", [[s.whirl for s in shapes]])
+    words = with_either(f"{at}; shaded: largest excursion over a turn, scaled to 1 where it is largest; triangles: bearings{hidden}", [[s.whirl for s in shapes]])
     return save(figure, study, f"shapes{suffix}", words, axes[0].get_legend_handles_labels()[0])
 
 

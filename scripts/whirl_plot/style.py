@@ -97,7 +97,7 @@ def mark_service(axis, subject, unit):
 
 def parameter_label(study):
     unit = study.attribute("parameter_unit", "")
-    name = study.attribute("parameter", "speed" if unit in ("rpm", "rad/s", "Hz") else "parameter")
+    name = study.attribute("parameter", "speed" if unit in ("rpm", "rad/s", "Hz") else "parameter").split(".")[-1].replace("_", " ")
     return f"{name} [{unit}]" if unit and unit != "1" else name
 
 

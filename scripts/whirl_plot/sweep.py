@@ -166,6 +166,8 @@ def draw_stability_factors(study):
     """Stability factors of all variants over the damped frequency, a panel for each speed; where there are few speeds."""
     files = []
     for name, rows in each(study, "modes", "spectrum/speed", "spectrum/frequency", "spectrum/stability_factor"):
+        if all(np.all(s.get("spectrum/stability_factor") == 1) for _, _, s in rows):
+            continue  # without damping all factors are one
         factor, label, _, _ = speed_axis(rows[0][2].attribute("speed_unit", "rad/s"))
         speeds = np.unique(rows[0][2].get("spectrum/speed"))
         if len(speeds) > 6:
@@ -291,6 +293,14 @@ def pairs_of(before, after):
     return pairs
 
 
+def label_of(study, head, unit):
+    """Name and unit of the parameter of a branch in the deck: `speed [rpm]`."""
+    studies = (study.results.deck or {}).get("studies") or []
+    options = next((o for entry in studies if isinstance(entry, dict) for o in entry.values() if isinstance(o, dict) and o.get("name") == head), {})
+    name = str(options.get("parameter", "speed")).split(".")[-1].replace("_", " ")
+    return f"{name} [{unit}]" if unit != "1" else name
+
+
 def draw_trends(study):
     """Where bifurcations lie over what the sweep changes, with their bars. Lines join what is the same bifurcation."""
     where = axis_of(study)
@@ -323,10 +333,10 @@ def draw_trends(study):
                 axis.errorbar(at[r], c["values"][r], yerr=c["uncertainties"][r] or 0, marker=MARKS[kind][1], color=colour, **BAR)
                 if old is not None and (before, old) in course:
                     axis.plot([at[before], at[r]], [columns[f"{head}.{kind}.{old}"]["values"][before], c["values"][r]], color=colour, linewidth=1.2)
-        axis.set_title(f"{head}: {MARKS[kind][0]}")
+        axis.set_title(f"{head}: {MARKS[kind][2]}")
         axis.set_xlabel(label)
-        axis.set_ylabel(columns[f"{head}.{kind}.1"]["unit"])
+        axis.set_ylabel(label_of(study, head, columns[f"{head}.{kind}.1"]["unit"]))
         known = [at[r] for r in rows]
         if known[0] > 0 and known[-1] / known[0] > 20:
             axis.set_xscale("log")
-    return save(figure, study, "trends", "bars: uncertainty; lines join bifurcations on the same side of stability, of whirl frequencies that differ by less than a fifth")
+    return save(figure, study, "trends", "with error bars; a line joins bifurcations of like stability whose whirl frequencies differ by less than 20 %")

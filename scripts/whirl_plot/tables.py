@@ -45,6 +45,7 @@ def inputs(results):
     if not isinstance(deck, dict):
         return []
     out, rows = [], []
+    matrix = lambda e, key: ", ".join(quantity(v) if number_of(v) else "0" for v in e.get(key) or []) if any(str(v)[:2] not in ("0", "0 ") for v in e.get(key) or []) else ""  # noqa: E731
     lubricants = deck.get("lubricants") or {}
     for name, b in (deck.get("bearings") or {}).items():
         g, f, p = b.get("geometry") or {}, b.get("film") or {}, b.get("pedestal") or {}
@@ -54,14 +55,14 @@ def inputs(results):
                                                                         if k in g and str(g[k]) not in ("0", "0 m")]).strip(", ")
         oil = lubricants.get(b.get("lubricant"), {}) if isinstance(b.get("lubricant"), str) else b.get("lubricant") or {}
         stiffness = " / ".join(quantity(k) for k in p.get("stiffness", [])) if isinstance(p, dict) else ""
+        own = [matrix(f, key) if f.get("type") == "linear" else "" for key in ("stiffness", "damping")]
         rows.append([name, b.get("node", ""), shape, *[quantity(g.get(k, "")) for k in ("radius", "length", "clearance")], film,
-                     quantity(oil.get("viscosity", "")) if isinstance(oil, dict) else "", quantity(b.get("elevation", "")), stiffness])
+                     quantity(oil.get("viscosity", "")) if isinstance(oil, dict) else "", quantity(b.get("elevation", "")), *own, stiffness])
     if rows:
-        head = ["bearing", "node", "bore", "radius", "length", "clearance", "film", "viscosity", "elevation", "pedestal stiffness x / y"]
+        head = ["bearing", "node", "bore", "radius", "length", "clearance", "film", "viscosity", "elevation", "K xx xy yx yy", "C xx xy yx yy", "pedestal stiffness x / y"]
         keep = [k for k in range(len(head)) if k == 0 or any(str(r[k]) not in ("", "0 m", "0 \u00b5m") for r in rows)]
         out.append(Table("Bearings", [head[k] for k in keep], [[r[k] for k in keep] for r in rows]))
     rows = []
-    matrix = lambda e, key: " ".join(quantity(v) for v in e.get(key) or []) if any(str(v)[:2] not in ("0", "0 ") for v in e.get(key) or []) else ""  # noqa: E731
     for name, e in (deck.get("elements") or {}).items():
         e = {**e, "stiffness": stiffness_of(e)}
         end = f"node {e['to_node']}" if e.get("to_node") else f"pedestal of {e['to_pedestal']}" if e.get("to_pedestal") else "ground"

@@ -4,6 +4,7 @@ import numpy as np
 
 from .canvas import plt
 from .style import COLOURS, GREY, INK, save
+from .units import person
 
 SAME = {"load": "load", "power_loss": "power loss", "mass_flow": "flow"}
 
@@ -36,6 +37,7 @@ def draw_effective(study):
         right.bar_label(bars, labels=["" if np.isnan(e) else f"{e:+.2g}" for e in shown], fontsize=8)
     right.axhline(0, color=GREY, linewidth=0.7)
     right.set_xticks(places, labels)
+    right.set_xlim(-0.5, len(same) - 0.5)
     right.set_ylabel("error of the film of one temperature [%]")
     return save(figure, study, "thd-effective", "at the same place of the journal, in the same clearance", handles=right.get_legend_handles_labels()[0])
 
@@ -61,9 +63,9 @@ def draw_properties(study):
             continue
         values = np.asarray(study.get(f"properties/{name}"))[order]
         axis.plot(t[order], values / values[0], "-o", markersize=3.5, linewidth=2.4 if name == "clearance" else 1.4,
-                  color=INK if name == "clearance" else COLOURS[n], label=f"{label}, {values[0]:.4g} {unit_of(study, name)}".rstrip())
+                  color=INK if name == "clearance" else COLOURS[n], label=f"{label}, {person(values[0], unit_of(study, name), 4)}")
     axis.axhline(1, color=GREY, linewidth=0.7)
     axis.set_xlabel("temperature [K]")
     axis.set_ylabel(f"over the value at {t.min():.5g} K")
-    return save(figure, study, "thd-properties", f"legend: value at {t.min():.5g} K; bush, shaft and fluid have this temperature throughout; the density is that at the pressure of the ambient",
+    return save(figure, study, "thd-properties", f"legend: value at {t.min():.5g} K; bush, shaft and fluid have one temperature; density at ambient pressure",
                 handles=axis.get_legend_handles_labels()[0], columns=3)

@@ -180,6 +180,8 @@ def axial(study, of, what, angles, words):
         z, r = np.meshgrid(journal["z"] * 1e3, journal["r"] * side * 1e3, indexing="ij")
         mesh = fill(axis, z, r, inside, limits)
     axis.set_aspect("equal")
+    low, high = axis.dataLim.get_points()
+    figure.set_figwidth(min(10.5, max(6.4, 5.2 * (high[0] - low[0]) / (high[1] - low[1]) + 1.6)))  # a short bearing needs no wide page
     axis.set_xlabel("z [mm]")
     axis.set_ylabel("r [mm]")
     figure.colorbar(mesh, ax=axis, label=LABEL).outline.set_visible(False)

@@ -1,7 +1,7 @@
 """Frequency responses: amplitude and phase of every output over the frequency, one colour for each input."""
 import numpy as np
 
-from .canvas import Line2D, plt
+from .canvas import Line2D, plain_numbers, plt
 from .style import COLOURS, DASHED, INK, ROTATION, save, speed_axis
 
 LINES = ("-", (0, (4, 2)), (0, (1.2, 1.4)), (0, (7, 1.6, 1.2, 1.6)))
@@ -12,6 +12,11 @@ def ways_of(response):
     for name in sorted((n for n in response if "frequency" in response[n].attrs), key=lambda n: (n != "machine", n)):
         at = response[name].attrs["frequency"]
         yield name, {"machine": "machine", "coefficients": "K, C at each frequency", "given": "K, C as given"}.get(name, f"K, C at {at:.5g} rad/s")
+
+
+def words_of(place):
+    """`node.7.slope_x` as a person reads it."""
+    return place.replace(".", " ").replace("_", " ")
 
 
 def turned(phase):
@@ -57,13 +62,16 @@ def draw(study):
         top.set_yscale("log")
         if log:
             top.set_xscale("log")
-        top.set_ylabel(f"amplitude [{', '.join(dict.fromkeys(units))}]")
+            plain_numbers(bottom.xaxis)
+        kinds = list(dict.fromkeys(units))
+        top.set_ylabel(f"amplitude, 0-peak [{', '.join(kinds)}]")
         bottom.set_ylabel("phase [\u00b0]")
         bottom.set_yticks(range(-180, 181, 90))
         bottom.set_ylim(-190, 190)
         bottom.set_xlabel(f"frequency [{unit}]")
-        top.set_title(f"{output} per unit of input" + (", about an unstable equilibrium" if unstable else ""))
-        handles = [Line2D([], [], color=c, label=f"from {i}") for c, i in zip(COLOURS * len(inputs), inputs)]
+        top.set_title(f"{words_of(output)} per unit of input" + (", about an unstable equilibrium" if unstable else ""))
+        of = {i: str(response["machine"][f"{output}.from.{i}"]["amplitude"].attrs.get("unit", "")) for i in inputs}
+        handles = [Line2D([], [], color=c, label=f"from {words_of(i)}" + (f" [{of[i]}]" if len(kinds) > 1 else "")) for c, i in zip(COLOURS * len(inputs), inputs)]
         if len(ways) > 1:
             handles += [Line2D([], [], color=INK, linestyle="none" if way == "coefficients" else line, marker="." if way == "coefficients" else None, label=words)
                         for (way, words), line in zip(ways, LINES * len(ways))]
