@@ -3,7 +3,7 @@ import numpy as np
 
 from .canvas import Line2D, plt
 from .curves import through
-from .style import GREY, INK, grid_of, save
+from .style import GREY, INK, grid_of, save, ticks_at
 
 ENTRIES = ("xx", "xy", "yx", "yy")
 LOAD = r"Sommerfeld number $S = (c/R)^2 F/(\mu\Omega LD)$"
@@ -165,7 +165,7 @@ def draw_pressure(whole, studies):
             axis.set_ylabel(label)
             axis.set_xlabel("\u03b8 [deg] from +x, counter-clockwise")
             axis.set_xlim(0, 360)
-            axis.set_xticks(range(0, 361, 60))
+            ticks_at(axis.xaxis, range(0, 361, 60))
         axes[2 * row].axhline(0, color=INK, linewidth=0.7)
         axes[2 * row + 1].set_ylim(bottom=0)
     return save(figure, whole, "map-pressure", "in the mid-plane; pressure below zero stays in the film equation of a liner and is cut off in the force",

@@ -25,7 +25,29 @@ def pyplot():
         "svg.fonttype": "none", "svg.hashsalt": "whirl", "path.simplify": True, "path.simplify_threshold": 0.15,
     })
     plain_decades()
+    keep_ticks()
     return matplotlib.pyplot
+
+
+def keep_ticks():
+    """A spine that is asked for its place for the first time throws away the ticks of its axis, which have just been made."""
+    from matplotlib.spines import Spine
+
+    def at_the_axes(spine):
+        if spine._position is None:
+            axis, spine.axis = spine.axis, None
+            spine.set_position(("outward", 0.0))
+            spine.axis = axis
+
+    Spine._ensure_position_is_set = at_the_axes
+
+
+def contours(axis, x, y, values, levels, colour, alpha):
+    """Lines of equal values as one artist; matplotlib makes one for each level."""
+    from contourpy import contour_generator
+    from matplotlib.collections import LineCollection
+    lines = contour_generator(x, y, values, corner_mask=False)
+    axis.add_collection(LineCollection([line for level in levels for line in lines.lines(level)], colors=[colour], linewidths=0.5, alpha=alpha), autolim=False)
 
 
 RAISED = str.maketrans("-\u22120123456789", "\u207b\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")

@@ -3,7 +3,7 @@ import numpy as np
 from matplotlib.ticker import NullLocator
 
 from .canvas import Line2D, plt
-from .style import COLOURS, INK, save
+from .style import COLOURS, INK, save, ticks_at
 
 NUMBERS = (("condition_vectors", "-", "vectors of the modes"), ("condition_stiffness", (0, (4, 2)), "stiffness"),
            ("condition_mass", (0, (1.2, 1.4)), "mass"))
@@ -18,7 +18,7 @@ def kinds_of(study):
 
 def count_elements(axis, elements):
     """Names the meshes on a logarithmic axis."""
-    axis.set_xticks(elements, [f"{n:.0f}" for n in elements])
+    ticks_at(axis.xaxis, elements, [f"{n:.0f}" for n in elements])
     axis.xaxis.set_minor_locator(NullLocator())
     axis.set_xlabel("elements")
 

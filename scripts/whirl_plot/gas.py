@@ -3,7 +3,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .canvas import plt
-from .style import BAD, COLOURS, GREY, INK, ON_PRESSURE, PRESSURE, least_span, save
+from .style import BAD, COLOURS, GREY, INK, ON_PRESSURE, PRESSURE, least_span, save, ticks_at
 from .thd_maps import angle_ticks
 from .units import digits
 
@@ -68,7 +68,7 @@ def draw_meshes(study):
     axis.plot(at, rim, "-o" if joined else "o", color=INK, markersize=4, label="pressure at the rim of the orifice")
     axis.plot(at, node, "--s" if joined else "s", color=BAD, markersize=4, label="pressure of the node: never converges")
     axis.margins(x=0.15)
-    axis.set_xticks(at, [f"{a:.0f} x {b:.0f}" for a, b in zip(n, study.get("meshes/along"))])
+    ticks_at(axis.xaxis, at, [f"{a:.0f} x {b:.0f}" for a, b in zip(n, study.get("meshes/along"))])
     axis.set_xlabel("cells around and along")
     axis.set_ylabel("load [N]")
     return save(figure, study, "gas-meshes", handles=axis.get_legend_handles_labels()[0])

@@ -2,7 +2,7 @@
 import numpy as np
 
 from .canvas import Line2D, plt
-from .style import DASHED, INK, SHADE, X, Y, length_unit, save
+from .style import DASHED, INK, SHADE, X, Y, length_unit, save, ticks_at
 from .units import digits
 
 PAIRS = ("xx", "xy", "yx", "yy")
@@ -48,7 +48,7 @@ def draw_transfer(study):
         above.set_yscale("log")
         above.set_ylim(1e-6 * largest, 3 * largest)
         below.set_ylim(-190, 190)
-        below.set_yticks([-180, -90, 0, 90, 180])
+        ticks_at(below.yaxis, [-180, -90, 0, 90, 180])
         above.set_title(f"displacement {pair[0]} by force {pair[1]}")
         below.set_xlabel("frequency [Hz]")
         for axis in (above, below):

@@ -5,7 +5,7 @@ from .bifurcation import Followed, legend
 from .bore import distance_in_words, draw_clearance, outline
 from .canvas import Line2D, plt
 from .curves import periodic
-from .style import DASHED, GREY, INK, ROTATION, Y, grid_of, mark, mark_end, parameter_label, save
+from .style import DASHED, GREY, INK, ROTATION, Y, grid_of, mark, mark_end, parameter_label, save, ticks_at
 from .units import person
 
 
@@ -150,7 +150,7 @@ def draw_harmonics(study, highest=20):
         axis.set_yscale("log")
         axis.set_ylim(low, 2 * top)
         axis.set_xlim(0.5, last + 0.5)
-        axis.set_xticks(np.arange(1, last + 1, -(-last // 8)))
+        ticks_at(axis.xaxis, np.arange(1, last + 1, -(-last // 8)))
         axis.set_xlabel("harmonic of the whirl")
         axis.set_title(name)
     axes[0, 0].set_ylabel(f"larger half-axis [{unit}]")

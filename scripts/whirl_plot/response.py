@@ -3,7 +3,7 @@ import numpy as np
 
 from .canvas import Line2D, plt
 from .margins import operating_in
-from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, mark_service, runs, save, span_of, speed_axis
+from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, mark_service, runs, save, span_of, speed_axis, ticks_at
 from .units import person
 
 NOTE = ("linear response, amplitudes 0-peak; lag behind the shaft angle: x = |X| cos(angle \u2212 lag), the heavy side points along x "
@@ -63,7 +63,7 @@ def draw_lag(axis, x, phase, colour, validity):
     for turn in range(int(np.floor(np.nanmin(lag) / 360)), int(np.floor(np.nanmax(lag) / 360)) + 1):
         validity.plot(axis, x, lag - 360 * turn, color=colour, linewidth=1.2)
     axis.set_ylim(360, 0)
-    axis.set_yticks(range(0, 361, 90))
+    ticks_at(axis.yaxis, range(0, 361, 90))
 
 
 def draw_place(study, amplitude_axis, phase_axis, x, data, k, scale, unit, speed_unit, place, validity):

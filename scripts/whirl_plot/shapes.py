@@ -6,7 +6,7 @@ import numpy as np
 from .campbell import LINES, OVERDAMPED, with_either
 from .canvas import Line2D, plt
 from .curves import along_shaft
-from .style import BAD, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, least_span, length_unit, save, span_of, speed_axis
+from .style import BAD, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, least_span, length_unit, save, span_of, speed_axis, ticks_at
 
 
 def bearing_places(study, z):
@@ -185,7 +185,7 @@ def draw_flat(study, speed, z, shapes, suffix, hidden=""):
         mark_bearings(axis, bearings, names=False)
         axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8.5)
         axis.set_ylim(-1.08, 1.08)
-        axis.set_yticks([-1, 0, 1])
+        ticks_at(axis.yaxis, [-1, 0, 1])
         axis.set_xlim(*span_of(z[0], z[-1]))
     for column in range(grid.shape[1]):
         visible = [a for a in grid[:, column] if a.get_visible()]

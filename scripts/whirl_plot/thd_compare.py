@@ -3,7 +3,7 @@ do over the temperature."""
 import numpy as np
 
 from .canvas import plt
-from .style import COLOURS, GREY, INK, save
+from .style import COLOURS, GREY, INK, save, ticks_at
 from .units import person
 
 SAME = {"load": "load", "power_loss": "power loss", "mass_flow": "flow"}
@@ -24,7 +24,7 @@ def draw_effective(study):
         mean = study.values["temperature.mean"].value
         left.axhline(mean, color=GREY, linewidth=0.9)
         left.annotate("mean of the film with heat", (-0.45, mean), textcoords="offset points", xytext=(0, 4), fontsize=8.5, color=GREY)
-    left.set_xticks(places, labels)
+    ticks_at(left.xaxis, places, labels)
     left.set_xlim(-0.5, len(same) - 0.3)
     left.set_ylabel("temperature of the film [K]")
     left.ticklabel_format(axis="y", useOffset=False)
@@ -36,7 +36,7 @@ def draw_effective(study):
         bars = right.bar(places + (n - 1) * width, shown, width, color=COLOURS[n], label=label)
         right.bar_label(bars, labels=["" if np.isnan(e) else f"{e:+.2g}" for e in shown], fontsize=8)
     right.axhline(0, color=GREY, linewidth=0.7)
-    right.set_xticks(places, labels)
+    ticks_at(right.xaxis, places, labels)
     right.set_xlim(-0.5, len(same) - 0.5)
     right.set_ylabel("error of the film of one temperature [%]")
     return save(figure, study, "thd-effective", "at the same place of the journal, in the same clearance", handles=right.get_legend_handles_labels()[0])

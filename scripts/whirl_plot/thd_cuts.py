@@ -3,8 +3,8 @@ import numpy as np
 from matplotlib import patheffects
 from matplotlib.patches import FancyArrowPatch
 
-from .canvas import plt
-from .style import DASHED, INK, LIGHT, save
+from .canvas import contours, plt
+from .style import DASHED, INK, LIGHT, key, save
 from .thd_film import HEAT, LABEL, RUPTURED, Film, closes, ring, stretches
 
 
@@ -56,7 +56,7 @@ def fill(axis, x, y, values, limits, isotherms=True):
     levels = np.linspace(low, high, 18)
     levels = levels[(levels > values.min()) & (levels < values.max())]
     if len(levels) and isotherms:
-        axis.contour(x, y, values, levels, colors="white", linewidths=0.5, alpha=0.7)
+        contours(axis, *np.broadcast_arrays(x, y, values), levels, "white", 0.7)
     return mesh
 
 
@@ -141,7 +141,7 @@ def draw_radial(study):
     axis.set_aspect("equal")
     axis.set_xlabel("x [mm]")
     axis.set_ylabel("y [mm]")
-    figure.colorbar(mesh, ax=axis, label=LABEL).outline.set_visible(False)
+    key(axis, mesh, LABEL)
     return save(figure, study, "thd-radial", f"section at z = {film.z[row] * 1e3:.3g} mm{at_speed(film)}; the film is drawn {factor:.0f} times as thick; "
                 f"{isotherms(limits)}" + regions_in_words(region))
 
@@ -184,7 +184,7 @@ def axial(study, of, what, angles, words):
     figure.set_figwidth(min(10.5, max(6.4, 5.2 * (high[0] - low[0]) / (high[1] - low[1]) + 1.6)))  # a short bearing needs no wide page
     axis.set_xlabel("z [mm]")
     axis.set_ylabel("r [mm]")
-    figure.colorbar(mesh, ax=axis, label=LABEL).outline.set_visible(False)
+    key(axis, mesh, LABEL)
     return save(figure, study, what, f"{words}{at_speed(film)}; the film is drawn {factor:.0f} times as thick; {isotherms(limits)}"
                 + regions_in_words(np.concatenate(shown)))
 

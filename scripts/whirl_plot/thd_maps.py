@@ -4,8 +4,9 @@ import numpy as np
 from matplotlib import patheffects
 from matplotlib.collections import LineCollection, PolyCollection
 
-from .canvas import plt
-from .style import GREY, INK, LIGHT, ON_PRESSURE, PRESSURE, key, length_unit, save
+from .canvas import contours, plt
+from .style import GREY, INK, LIGHT, ON_PRESSURE, PRESSURE, key, length_unit, save, ticks_at
+from .streamlines import streamlines
 from .thd_film import HEAT, LABEL, RUPTURED, Film, ring
 
 SIGNED = "RdBu_r"
@@ -66,7 +67,7 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, 
             continue
         here = levels[(levels > inside.min()) & (levels < inside.max())]
         if (part != RUPTURED or not jumps) and len(here) and not same:
-            axis.contour(*middles, inside, here, colors=ink, linewidths=0.5, alpha=0.6, corner_mask=False)
+            contours(axis, *middles, inside, here, ink, 0.6)
     axis.grid(False)
     key(axis, mesh, label)
 
@@ -75,7 +76,7 @@ def angle_ticks(axis, first, last):
     """Ticks of an angle in degrees, read within one turn."""
     step = next((s for s in (5, 10, 15, 30, 45) if (last - first) / s <= 9), 45)
     at = np.arange(np.ceil(first / step - 1e-9), last / step + 1e-9) * step
-    axis.set_xticks(at, [f"{a % 360:g}" for a in at])
+    ticks_at(axis.xaxis, at, [f"{a % 360:g}" for a in at])
 
 
 def hatch_cavity(axis, film, colour=LIGHT):
@@ -181,10 +182,14 @@ def streams(axis, film, around, along, known):
     known = np.where(known, 1.0, np.nan)
     theta, around = ring(film.theta, around * known, film.closed)
     _, along = ring(film.theta, along * known, film.closed)
-    theta = np.degrees(np.linspace(theta[0], theta[-1], len(theta)))
-    z = np.linspace(film.z[0], film.z[-1], len(film.z)) * 1e3
-    axis.streamplot(theta, z, np.degrees(np.ma.masked_invalid(around) / film.radius), np.ma.masked_invalid(along) * 1e3, color=GREY, linewidth=0.6,
-                    density=0.8, arrowsize=0.6)
+    span, length = theta[-1] - theta[0], film.z[-1] - film.z[0]
+    lines = [(np.degrees(theta[0] + span * x), 1e3 * (film.z[0] + length * y)) for x, y in streamlines(around / (film.radius * span), along / length)]
+    axis.add_collection(LineCollection([np.column_stack(line) for line in lines], colors=GREY, linewidths=0.6, label="_streamlines"), autolim=False)
+    middles = np.array([[values[len(values) // 2 + k] for values in line for k in (0, 1)] for line in lines]).reshape(-1, 4)
+    way = np.diff(middles.reshape(-1, 2, 2), axis=2)[..., 0]
+    way /= np.maximum(np.hypot(*way.T), 1e-300)[:, None]
+    axis.quiver(middles[:, 0], middles[:, 2], *way.T, angles="xy", units="inches", scale_units="inches", scale=20, width=0.01, headwidth=5, headlength=5, headaxislength=4.5,
+                pivot="mid", color=GREY)
 
 
 def draw_velocity(study):

@@ -2,7 +2,7 @@
 import numpy as np
 
 from .canvas import plt
-from .style import INK, length_unit, save, span_of
+from .style import INK, key, length_unit, save, span_of
 from .thd_cuts import at_speed, axial, edge, fill_film, parts, regions_in_words
 from .thd_film import LABEL, Film, ring, stretches
 from .thd_maps import angle_ticks
@@ -38,7 +38,7 @@ def cuts(film):
     return nearest(angle), nearest(angle + way * step / 2), int(np.argmin(np.abs(film.z - z))), kind, words
 
 
-def of_film(figure, axis, film, region, at, thickness, values, limits, scale, orifices):
+def of_film(axis, film, region, at, thickness, values, limits, scale, orifices):
     """The film over the bush, [um]; values [across, node]. Above it the journal, below it what orifices open at."""
     for kind, places, piece in stretches(region, at, values):
         height = np.interp(places, at, thickness) * film.zeta[:, None] * scale
@@ -55,7 +55,7 @@ def of_film(figure, axis, film, region, at, thickness, values, limits, scale, or
     axis.grid(False)
     axis.text(0.99, 0.97, "journal", transform=axis.transAxes, ha="right", va="top", fontsize=8, color=INK)
     axis.text(0.03, 0.01, "bush", transform=axis.transAxes, ha="left", va="bottom", fontsize=8, color=INK)
-    figure.colorbar(mesh, ax=axis, label=LABEL, pad=0.015).outline.set_visible(False)
+    key(axis, mesh, LABEL)
 
 
 def draw_film(study):
@@ -75,7 +75,7 @@ def draw_film(study):
     for axis, i, where in zip(axes[0], columns, (f"at {'an' if kind == 'orifice' else 'a'} {kind}", words)):
         angle = np.degrees(film.theta[i]) % 360
         here = np.abs((angles - angle + 180) % 360 - 180) < half
-        of_film(figure, axis, film, film.region[:, i], z, film.thickness[:, i], film.temperature[:, i].T, limits[0], scale, heights[here] * 1e3)
+        of_film(axis, film, film.region[:, i], z, film.thickness[:, i], film.temperature[:, i].T, limits[0], scale, heights[here] * 1e3)
         axis.set_title(f"along at {angle:.4g} deg, {where}")
         axis.set_xlabel("z [mm]")
     through = f"through the {kind}" + ("s" if len(supplies(film)[1]) > 1 else "")
@@ -86,7 +86,7 @@ def draw_film(study):
         _, thickness = ring(film.theta, film.thickness[j], True)
         low, high = np.degrees(theta[[0, -1]])
         open_at = np.unique([a + turn for a in angles[here] for turn in (-360, 0, 360) if low - 1e-6 < a + turn < high + 1e-6])
-        of_film(figure, axis, film, region, np.degrees(theta), thickness, values, limits[1], scale, open_at)
+        of_film(axis, film, region, np.degrees(theta), thickness, values, limits[1], scale, open_at)
         axis.set_title(f"around at z = {z[j]:.3g} mm, {where}")
         axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
         angle_ticks(axis, low, high)

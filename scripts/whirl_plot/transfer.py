@@ -2,7 +2,7 @@
 import numpy as np
 
 from .canvas import Line2D, plain_numbers, plt
-from .style import COLOURS, DASHED, INK, ROTATION, save, speed_axis
+from .style import COLOURS, DASHED, INK, ROTATION, save, speed_axis, ticks_at
 
 LINES = ("-", (0, (4, 2)), (0, (1.2, 1.4)), (0, (7, 1.6, 1.2, 1.6)))
 
@@ -66,7 +66,7 @@ def draw(study):
         kinds = list(dict.fromkeys(units))
         top.set_ylabel(f"amplitude, 0-peak [{', '.join(kinds)}]")
         bottom.set_ylabel("phase [\u00b0]")
-        bottom.set_yticks(range(-180, 181, 90))
+        ticks_at(bottom.yaxis, range(-180, 181, 90))
         bottom.set_ylim(-190, 190)
         bottom.set_xlabel(f"frequency [{unit}]")
         top.set_title(f"{words_of(output)} per unit of input" + (", about an unstable equilibrium" if unstable else ""))

@@ -8,13 +8,16 @@ import types
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import LineCollection, QuadMesh
+from matplotlib.collections import QuadMesh
+from PIL import Image
 
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, multipliers, orbits, orders, shapes, style, sweep, thd_compare,  # noqa: E402
-                        thd_cuts, thd_film, thd_maps, thd_sections)
+from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, multipliers, orbits, orders, shapes, streamlines as flow, style, sweep,  # noqa: E402
+                        thd_compare, thd_cuts, thd_film, thd_maps, thd_sections)
+from whirl_plot.canvas import plt as our_plt  # noqa: E402
+from whirl_plot.ticks import together  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 
@@ -524,7 +527,7 @@ def ruptured(folder):
     assert contours
     for path in contours:
         assert (region_at(film, *path.vertices.T) == thd_film.FULL).all(), "a contour through the groove or the cavity"
-    lines = [c for c in pressed.collections if isinstance(c, LineCollection) and len(c.get_segments()) > 100]
+    lines = [c for c in pressed.collections if c.get_label() == "_streamlines"]
     points = np.concatenate(lines[0].get_segments())
     assert (region_at(film, *points.T) != thd_film.RUPTURED).all(), "a line of flow in the cavity"
     radial, = [a for a in figures["thd-radial"].axes if a.get_xlabel()]
@@ -571,7 +574,7 @@ def heat_flows(folder):
 
 
 def streamlines(axis):
-    lines = [c for c in axis.collections if isinstance(c, LineCollection) and len(c.get_segments()) > 100]
+    lines = [c for c in axis.collections if c.get_label() == "_streamlines"]
     return np.concatenate(lines[0].get_segments())
 
 
@@ -746,7 +749,75 @@ def without_meaning(folder):
     assert sorted(map(len, figures)) == sorted(map(len, histories)) == [0, 1]
 
 
+def ticks_drawn_together():
+    """The pixels are those of ticks drawn one by one: linear, logarithmic with minor ticks, with names, at the top, switched off, with a power of ten."""
+    def pixels(one_by_one):
+        figure, axes = our_plt.subplots(2, 2, figsize=(7, 5))
+        (a, b), (c, d) = axes
+        a.plot([0, 1e6], [-3e-7, 2e-7])
+        a.set_xlabel("x [m]")
+        b.loglog([2, 3e4], [1e-5, 0.3])
+        b.set_ylabel("y")
+        style.ticks_at(c.xaxis, [0, 45, 90, 135], ["0", "a quarter", "", "more"])
+        c.plot([0, 135], [0, 1])
+        c.xaxis.tick_top()
+        d.plot([5, 6], [7, 8])
+        d.tick_params(labelbottom=False)
+        d.grid(False)
+        figure.get_layout_engine().execute(figure)
+        if one_by_one:
+            figure.canvas.draw()
+        else:
+            with together():
+                figure.canvas.draw()
+        return np.asarray(figure.canvas.buffer_rgba()).copy()
+
+    expected, found = pixels(True), pixels(False)
+    assert np.array_equal(found, expected), np.argwhere(np.any(found != expected, axis=2))[:5]
+
+    figure, axis = our_plt.subplots()
+    with together():
+        figure.get_layout_engine().execute(figure)
+        figure.canvas.draw()
+    assert len(axis.xaxis.majorTicks) == 1, f"{len(axis.xaxis.majorTicks)} ticks were made"
+
+
+def flow_lines():
+    """Lines about a centre are circles, evenly spaced; of a uniform flow they are straight; no line beside nodes without a flow."""
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, 60), np.linspace(-0.5, 0.5, 40))
+    lines = flow.streamlines(-y, x)
+    radii = [np.hypot(*(line - 0.5)) for line in lines]
+    assert len(lines) > 10 and max(np.ptp(r) for r in radii) < 2e-3, max(np.ptp(r) for r in radii)
+    middles = np.sort([r.mean() for r in radii])
+    assert np.diff(middles[middles < 0.4]).max() < 4 / flow.CELLS, "a gap between lines"
+    cells = [set(map(tuple, (line.T * flow.CELLS).astype(int).tolist())) for line in lines]
+    assert sum(map(len, cells)) == len(set().union(*cells)), "two lines in a cell"
+    hole = np.where((x < 0) & (y < 0), np.nan, 1.0)
+    lines = flow.streamlines(hole, 0.5 * hole)
+    assert all(np.allclose(np.diff(line[1]) / np.diff(line[0]), 0.5) for line in lines) and max(np.ptp(line[0]) for line in lines) > 0.4
+    assert not any(((line[0] < 0.49) & (line[1] < 0.48)).any() for line in lines)
+
+
+def keys_and_files():
+    """Numbers beside a key are where they say, whatever the step; a picture of all colours holds each pixel as it is."""
+    for low, high in ((352.5, 364.5), (0, 3.7), (-1e-3, 4e-3), (95, 106), (5, 5)):
+        figure, axis = our_plt.subplots()
+        style.key(axis, axis.imshow(np.array([[low, high]]), vmin=low, vmax=high), "T [K]")
+        told = [(float(t.get_text().replace("\u2212", "-")), t.get_position()[1]) for t in axis.texts if t.get_text() != "T [K]"]
+        assert len(told) >= (3 if high > low else 1) and all(np.isclose(value, low + at * (high - low), rtol=0, atol=1e-3 * (high - low)) for value, at in told if high > low), (low, high, told)
+        plt.close(figure)
+    pixels = np.random.default_rng(1).integers(0, 256, (37, 53, 4), dtype=np.uint8)
+    with tempfile.TemporaryDirectory() as name:
+        file = pathlib.Path(name) / "x.png"
+        style.write_all_colours(pixels, file)
+        with Image.open(file) as image:
+            assert image.mode == "RGB" and np.array_equal(np.asarray(image), pixels[..., :3])
+
+
 style.use_style()
+ticks_drawn_together()
+flow_lines()
+keys_and_files()
 beams()
 turning_branches()
 sharp_points()
