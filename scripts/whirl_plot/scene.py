@@ -4,7 +4,8 @@
 
 writes STUDY.scene.xdmf and STUDY.scene.h5 beside results.h5, for each study that has a sag or shapes. ParaView's time is the part of a
 turn of the mode that has passed. Deflections are drawn larger, by the factor in the name of the block: a reach of 0.1 makes the largest
-one a tenth of the length of the shaft. Discs, added masses and the bores of hollow shafts are not drawn.
+one a tenth of the length of the shaft. Discs and added masses are part of the solid; a disc that the deck gives by its mass alone has a
+size that goes with its mass.
 """
 import argparse
 import pathlib
@@ -14,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 import h5py
 import numpy as np
 
-from .machine import right_radius
+from .machine import discs_of, right_radius
 from .manifest import register
 from .shapes import at_words, normalised, tables_of
 from .subject import Drawn, called, said_in_a_sentence
@@ -24,23 +25,37 @@ SIDES = 20
 
 
 def profile(deck, z):
-    """(z, radius) of the shaft, twice at each place between segments; a plain rod where the deck gives no segments."""
+    """(z, radius, radius of the bore) of the rotor, twice at each place between which it is smooth: shaft, added masses and discs; a plain
+    rod where the deck gives no segments."""
     segments = (deck or {}).get("rotor", {}).get("segments") or []
     if not isinstance(segments, list) or not segments:
-        return np.array([z[0], z[-1]]), np.full(2, 0.02 * (z[-1] - z[0]))
+        return np.array([z[0], z[-1]]), np.full(2, 0.02 * (z[-1] - z[0])), np.zeros(2)
+    half = lambda s, *keys: max(number(s.get(key)) or 0.0 for key in keys) / 2  # noqa: E731
     ends = np.cumsum([0.0] + [number(s.get("length")) or 0.0 for s in segments]) + z[0]
-    left = [max(number(s.get(key)) or 0.0 for key in ("outer_mass_diameter", "outer_stiffness_diameter")) / 2 for s in segments]
-    right = [right_radius(s, "right_outer_diameter", r) for s, r in zip(segments, left)]
-    return np.repeat(ends, 2)[1:-1], np.column_stack((left, right)).ravel()
+    parts = []  # from, to, radii there, radii of the bore there
+    for s, a, b in zip(segments, ends, ends[1:]):
+        left, bore = half(s, "outer_mass_diameter", "outer_stiffness_diameter"), half(s, "inner_mass_diameter")
+        parts.append((a, b, left, right_radius(s, "right_outer_diameter", left), bore, right_radius(s, "right_inner_diameter", bore)))
+        if number(s.get("added_mass")):
+            parts.append((a, b, *[half(s, "added_mass_outer_diameter")] * 2, 0, 0))
+    for node, radius, thickness, _, offset in discs_of(deck, max(max(p[2:4]) for p in parts)):
+        if 1 <= node <= len(ends):
+            at, thickness = ends[node - 1] + offset, thickness or 0.012 * (ends[-1] - ends[0])
+            parts.append((at - thickness / 2, at + thickness / 2, radius, radius, 0, 0))
+    edges = np.unique([p[:2] for p in parts])
+    rows = []
+    for a, b in zip(edges, edges[1:]):
+        here = [p for p in parts if p[0] <= a and b <= p[1]] or [(a, b, 0, 0, 0, 0)]
+        rows += [(at, *(max(np.interp(at, p[:2], p[k:k + 2]) for p in here) for k in (2, 4))) for at in (a, b)]
+    return np.array(rows).T
 
 
-def solid(z, radius, x, y):
-    """Corners [axis or surface][angle][place][x, y, z] of a solid of revolution whose centres are at x, y."""
+def solid(z, radius, bore, x, y):
+    """Corners [bore or surface][angle][place][x, y, z] of a solid of revolution whose centres are at x, y."""
     angle = np.linspace(0, 2 * np.pi, SIDES + 1)
     out = np.zeros((2, SIDES + 1, len(z), 3), dtype=np.float32)
-    out[..., 0], out[..., 1], out[..., 2] = x, y, z
-    out[1, ..., 0] += radius * np.cos(angle)[:, None]
-    out[1, ..., 1] += radius * np.sin(angle)[:, None]
+    for k, r in enumerate((bore, radius)):
+        out[k, ..., 0], out[k, ..., 1], out[k, ..., 2] = x + r * np.cos(angle)[:, None], y + r * np.sin(angle)[:, None], z
     return out
 
 
@@ -65,12 +80,12 @@ class Scene:
 
     def shaft(self, name, places, x, y, times, factor):
         """The shaft with centres x, y [time][place], drawn `factor` times as far from its axis."""
-        z, radius = profile(self.study.results.deck, places)
+        z, radius, bore = profile(self.study.results.deck, places)
         key = f"{len(self.blocks)}"
         steps = []
         for k, time in enumerate(times):
             here = [np.interp(z, places, row[k]) for row in (x, y)]
-            corners = solid(z, radius, *(factor * row for row in here))
+            corners = solid(z, radius, bore, *(factor * row for row in here))
             distance = np.broadcast_to(np.hypot(*here).astype(np.float32), corners.shape[:3])
             for what, values in ((f"{key}/xyz{k}", corners), (f"{key}/distance{k}", distance)):
                 self.data.create_dataset(what, data=values, compression=1, shuffle=True)

@@ -57,7 +57,9 @@ def results_in(folder):
         bend = np.sin(np.pi * z / 2)
         synthetic.put(m.create_group("shapes"), z=z, speed=[100.0], mode=[1], frequency=[50.0], whirl=["forward"], log_decrement=[0.1],
                       x_real=[bend], x_imag=[0 * z], y_real=[0 * z], y_imag=[-bend])
-    (folder / "resolved.yaml").write_text("rotor: {segments: [{length: 1 m, outer_mass_diameter: 0.2 m}, {length: 1 m, outer_mass_diameter: 0.1 m}]}\n")
+    # A hollow shaft with a disc of 0.2 m at its middle and an added mass along its second half.
+    (folder / "resolved.yaml").write_text("rotor: {segments: [{length: 1 m, outer_mass_diameter: 0.2 m, inner_mass_diameter: 0.05 m}, {length: 1 m, outer_mass_diameter: 0.1 m, "
+                                          "added_mass: 3 kg, added_mass_outer_diameter: 0.14 m}], discs: [{node: 2, mass: 9 kg, outer_diameter: 0.5 m, thickness: 0.2 m}]}\n")
 
 
 with tempfile.TemporaryDirectory() as name:
@@ -71,17 +73,18 @@ with tempfile.TemporaryDirectory() as name:
     (title, steps), = blocks_of(files[2]).items()
     check("name of a mode", title.startswith("mode 1 at speed 100 rad/s: 7.958 Hz"), title)
     check("a whole turn", np.allclose([time for time, _ in steps], np.arange(9) / 8))
-    centres = np.array([corners[0, 0] for _, corners in steps])
+    centres = np.array([corners[:, :-1].mean(axis=(0, 1)) for _, corners in steps])
     middle = np.argmin(np.abs(centres[0, :, 2] - 1.0))
     check("a forward mode turns from x to y by a circle of the reach", np.allclose(np.hypot(centres[:, middle, 0], centres[:, middle, 1]), 0.2, rtol=1e-5)
                   and np.allclose(np.diff(np.unwrap(np.arctan2(centres[:, middle, 1], centres[:, middle, 0]))), np.pi / 4, rtol=1e-5), centres[:, middle])
-    radii = [np.hypot(*(corners[1] - corners[0])[..., :2].transpose(2, 0, 1)) for _, corners in steps]
-    ends = np.array([0.1, 0.1, 0.05, 0.05])
-    check("a solid of revolution of the deck's radii", all(np.allclose(r, ends[None, :], rtol=1e-5) for r in radii), radii[0])
+    radii = np.array([np.hypot(*(corners - centre)[..., :2].transpose(3, 0, 1, 2)) for centre, (_, corners) in zip(centres, steps)])
+    check("edges", np.allclose(centres[0, :, 2], np.repeat([0, 0.9, 1, 1.1, 2], 2)[1:-1]), centres[0, :, 2])
+    check("a solid of revolution of the deck's radii with its disc and added mass", np.allclose(radii[:, 1], [0.1, 0.1, 0.25, 0.25, 0.25, 0.25, 0.07, 0.07], rtol=1e-4), radii[0, 1])
+    check("a bore as far as the shaft is hollow", np.allclose(radii[:, 0], [0.025] * 4 + [0] * 4, atol=1e-6), radii[0, 0])
 
     static = blocks_of(files[0])
     check("sag and bores in one file", list(static) == ["sag, drawn 2e+03 times", "A & B pad1"], list(static))
-    sag = static["sag, drawn 2e+03 times"][0][1][0, 0]
+    sag = static["sag, drawn 2e+03 times"][0][1][:, :-1].mean(axis=(0, 1))
     check("the sag reaches down a tenth of the length", np.isclose(sag[:, 1].min(), -0.2, rtol=1e-5))
     bore = static["A & B pad1"][0][1]
     check("a bore lies about the shaft as it is drawn", np.allclose(np.hypot(bore[..., 0], bore[..., 1] - (1999 * -1e-4 * np.sin(np.pi / 4))), 0.05, rtol=1e-5), bore[0, 0])
