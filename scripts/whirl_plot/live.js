@@ -15,7 +15,8 @@
       this.charts = data.panels.map((panel, k) => this.panel(row, panel, k));
       this.said = make('output', place, {className: 'said'});
       this.said.setAttribute('aria-live', 'polite');
-      data.lines.forEach(line => {  // an orbit stands beside the branch before a point of it is pointed at
+      // Until the cursor points at a branch, the panel beside it shows the orbit from the middle of the branch.
+      data.lines.forEach(line => {
         if (line.f != null && !this.followed.has(line.n)) {
           this.followed.set(line.n, this.middle(line));
           this.last = this.last || line.n;
@@ -38,7 +39,7 @@
         select.onchange = () => { this.option = +select.value; this.whole(); this.refresh(); };
       } else if (choose && choose.of.length) make('span', bar, {className: 'style'}, choose.of[0]);
       const names = new Map();
-      // Curves first, then marks; a curve that is solid anywhere is solid here.
+      // Buttons of curves stand before those of marks. If any stretch of a curve is solid, its button shows a solid line.
       for (const marked of [false, true]) {
         for (const line of this.data.lines) if (line.n && !(line.m || line.dots) === !marked && (!names.has(line.n) || names.get(line.n).d && !line.d)) names.set(line.n, line);
       }
@@ -76,14 +77,15 @@
       for (const b of bar.querySelectorAll('.toggle')) b.setAttribute('aria-pressed', !this.off.has(b.dataset.name));
     }
 
-    // A line as Chart.js has it. The style of a stretch is that of the point at which it begins.
+    // Turns a line of the data into a dataset of Chart.js. A stretch between two points has the style of its first point.
     dataset(line) {
       const styles = this.data.styles || [], of = i => line.s ? styles[parseInt(line.s[i], 36)] || {} : {};
       const found = {
         line, label: line.n || '', data: line.x.map((x, i) => ({x, y: line.y[i]})), borderColor: line.c, backgroundColor: line.c,
         borderWidth: line.w || 1.6, borderDash: DASHES[line.d || 0], showLine: !line.m, pointStyle: line.m || 'circle', pointRadius: line.m ? 6 : line.x.length === 1 ? 3 : 0,
         pointHoverRadius: line.quiet ? 0 : line.m ? 8 : 4, pointHitRadius: 0, pointBorderColor: !line.m || line.m.startsWith('cross') ? line.c : '#fff', pointBorderWidth: line.m ? 1.5 : 1, spanGaps: false,
-        // Without a tension Chart.js joins points of one column of pixels, which is right for curves over x only.
+        // At tension 0 Chart.js leaves out points that share a column of pixels with others. This suits a function of x, but distorts an orbit:
+        // a tiny tension keeps all points.
         tension: this.data.panels[line.p || 0].by === 'x' ? 0 : 1e-6,
         order: line.m ? 0 : line.quiet ? 2 : 1,
       };
@@ -183,7 +185,7 @@
       });
     }
 
-    // Limits of the axes: those of a zoom, those of the panel, or with equal scales a frame around all curves.
+    // Sets the limits of the axes: those of the zoom, or else those of the panel. A panel with equal scales without a zoom shows all curves.
     fit(chart) {
       const {panel, zoom} = chart.whirl, {x, y} = chart.options.scales;
       if (panel.equal) {
@@ -211,7 +213,7 @@
     zoomed(chart, x, y) {
       this.charts.forEach(c => {
         if (c !== chart && (chart.whirl.panel.equal || c.whirl.panel.equal)) return;
-        // A logarithmic axis has no zero.
+        // A logarithmic axis cannot show zero or less: keep its lower end there.
         const above = (v, s) => v && s.type === 'logarithmic' && v[0] <= 0 ? [s.min, v[1]] : v;
         c.whirl.zoom = {x: above(x, c.scales.x), y: c === chart ? above(y, c.scales.y) : (c.whirl.zoom || {}).y};
         this.fit(c);
@@ -237,7 +239,7 @@
         const [px, py] = inside(e), a = chart.chartArea, wide = e.pointerType === 'touch' && !chart.whirl.panel.equal;
         if (Math.abs(px - start[0]) + Math.abs(py - start[1]) < 6) return;
         if (!chart.whirl.frame) canvas.setPointerCapture(e.pointerId);
-        // A narrow frame zooms along one axis only.
+        // A frame of almost no width or height zooms along the other axis only.
         const flat = wide || Math.abs(py - start[1]) < 12, thin = !wide && Math.abs(px - start[0]) < 12;
         chart.whirl.frame = {x0: thin ? a.left : start[0], x1: thin ? a.right : px, y0: flat ? a.top : start[1], y1: flat ? a.bottom : py, flat, thin};
         chart.draw();
@@ -289,7 +291,7 @@
     }
   }
 
-  // A figure is made when it comes near the screen; until then its place has its height.
+  // Makes the figure of a place. This is called when the reader scrolls near it; a page has too many figures to make all of them at once.
   const build = place => {
     if (place.whirl) return;
     const data = JSON.parse(place.querySelector('script').textContent);
@@ -297,7 +299,7 @@
       place.whirl = data.kind === 'shapes' ? new WhirlShapes(place, data) : new Figure(place, data);
     } catch (error) {
       console.error(error);
-      place.parentElement.classList.remove('charted');  // its picture comes back
+      place.parentElement.classList.remove('charted');  // the page shows the picture instead
     }
   };
   const near = new IntersectionObserver(seen => seen.forEach(s => {

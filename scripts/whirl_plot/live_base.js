@@ -1,4 +1,4 @@
-// What the charts of a report share: numbers in words, the value under the cursor, what stands behind the curves.
+// Functions that all charts of a report use: numbers as text, the search for the point under the cursor, the background of a panel.
 'use strict';
 const Live = (() => {
   const INK = '#222', GREY = '#7a7a7a', LIGHT = '#e3e7ec';
@@ -13,7 +13,7 @@ const Live = (() => {
   const number = v => v == null || !isFinite(v) ? '–' : v === 0 ? '0' : String(Math.abs(v) < 1e-4 || Math.abs(v) >= 1e7
     ? v.toExponential(3) : +v.toPrecision(5)).replace(/-/g, '−');
   const raised = n => String(n).replace(/./g, c => '⁰¹²³⁴⁵⁶⁷⁸⁹'['0123456789'.indexOf(c)] || '⁻');
-  // Numbers of an axis; of a logarithmic one 1, 2 and 5 of each decade, or powers of ten where it has many.
+  // Tick labels. A logarithmic axis shows 1, 2 and 5 of each decade; if it spans many decades, powers of ten only.
   const tick = log => !log ? number : function (v) {
     const power = Math.floor(Math.log10(v) + 1e-9), first = Math.round(v / 10 ** power), wide = Math.log10(this.max / this.min) > 2.5;
     if (!(wide ? [1] : [1, 2, 5]).includes(first)) return null;
@@ -22,7 +22,8 @@ const Live = (() => {
   const axis = ([name, unit]) => unit ? `${name} [${unit}]` : name;
   const valued = (v, unit) => unit ? `${number(v)} ${unit}` : number(v);
 
-  // What the cursor finds: the mark that it is on, or the nearest computed point, along the axis `x` one of every curve.
+  // Finds what the tooltip shows: a mark if the cursor is on one, or else the nearest computed point. Panels over `x` show one point of each
+  // curve, the nearest along x.
   Chart.Interaction.modes.value = (chart, e, {axis}) => {
     const found = [], {left, right, top, bottom} = chart.chartArea, inside = p => p.x >= left - 1 && p.x <= right + 1 && p.y >= top - 1 && p.y <= bottom + 1;
     chart.data.datasets.forEach(({line}, datasetIndex) => {
@@ -49,12 +50,12 @@ const Live = (() => {
   // Bands of unstable stretches, lines at named places, and the frame that is dragged.
   const ground = state => ({
     id: 'ground',
-    // Equal scales follow from the room that titles and numbers leave, which is known only now.
+    // Equal scales depend on the size of the plot area, which is known only after titles and tick labels have their place.
     afterLayout(chart) {
       const a = chart.chartArea, size = `${chart.width} ${chart.height}`, known = state.room || [];
       const same = known[2] === size;
       if (!state.panel.equal || !(a.width > 0 && a.height > 0) || same && (known[3] > 3 || a.width === known[0] && a.height === known[1])) return;
-      state.room = [a.width, a.height, size, same ? known[3] + 1 : 0];  // numbers that change change the room: not for ever
+      state.room = [a.width, a.height, size, same ? known[3] + 1 : 0];  // new limits may change the tick labels and with them the size again: stop after a few rounds
       queueMicrotask(() => { state.fit(); chart.update('none'); });
     },
     beforeDatasetsDraw(chart) {
@@ -99,7 +100,7 @@ const Live = (() => {
     },
   });
 
-  // Long lines would leave a narrow screen.
+  // Breaks a text into lines that fit a narrow screen.
   const wrapped = (words, width) => {
     const most = Math.max(24, Math.min(70, width / 7.5)), lines = [''];
     for (const word of words.split(' ')) {

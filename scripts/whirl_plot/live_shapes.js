@@ -18,7 +18,7 @@ class WhirlShapes {
     this.listen();
     new ResizeObserver(() => this.draw()).observe(box);
     new IntersectionObserver(([seen]) => { this.visible = seen.isIntersecting; this.tick(); }).observe(place);
-    // Nothing moves by itself for whoever asked the system for less motion.
+    // Start the motion, unless the reader has asked the system for less motion.
     this.play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
   }
 
@@ -65,7 +65,7 @@ class WhirlShapes {
     c.setTransform(fine, 0, 0, fine, 0, 0);
     c.clearRect(0, 0, w, h);
     c.font = "11px system-ui, 'DejaVu Sans', sans-serif";
-    // z to the right, y up, x to the back; the shaft fills the width.
+    // z points to the right, y up, x to the back. The shaft fills the width of the panel.
     const long = z[z.length - 1] - z[0] || 1, thick = 0.3 * Math.max(1, Math.min(2.5, 2.2 * h / w));
     const [cy, sy, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
     const flat = (a, b, y) => [a * cy + b * sy, -y * cp - (b * cy - a * sy) * sp];
@@ -93,7 +93,7 @@ class WhirlShapes {
     const rings = Math.min(17, z.length);
     for (let r = 0; r < rings; ++r) {
       const k = Math.round(r * (z.length - 1) / Math.max(rings - 1, 1));
-      // Run through from x to y: forward whirl, blue; the other way: backward, orange.
+      // Forward whirl, from x to y, is blue; backward whirl is orange.
       const forward = m.x[0][k] * m.y[1][k] - m.x[1][k] * m.y[0][k] <= 0;
       path(Array.from({length: 41}, (_, j) => at(z[k], ...where(k, j * Math.PI / 20))), forward ? '#9db9d3' : '#e3b083', 1);
       const [px, py] = at(z[k], ...where(k, turn));
