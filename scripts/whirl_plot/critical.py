@@ -5,6 +5,7 @@ from .canvas import Line2D, plain_numbers, plt
 from .style import COLOURS, INK, save
 
 LINES = (("forward", "-"), ("backward", (0, (4, 2))))
+TO_RPM = 30 / np.pi
 
 
 def draw_map(study):
@@ -15,7 +16,7 @@ def draw_map(study):
     figure, axis = plt.subplots(figsize=(8.6, 5.2))
     modes = 0
     for name, line in LINES:
-        speeds = np.atleast_2d(study.get(f"map/{name}")) * 30 / np.pi
+        speeds = np.atleast_2d(study.get(f"map/{name}")) * TO_RPM
         modes = max(modes, speeds.shape[1])
         for n in range(speeds.shape[1]):
             if np.isfinite(speeds[:, n]).any():

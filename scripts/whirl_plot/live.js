@@ -122,8 +122,8 @@
       const line = item.dataset.line, {x, y} = chart.whirl.panel, i = item.dataIndex, name = line.n ? line.n + ': ' : '';
       if (line.t) return line.t[i];
       const style = line.s && this.data.styles[parseInt(line.s[Math.min(i, line.s.length - 1)], 36)];
-      return `${name}${valued(line.y[i], line.u == null ? y[1] : line.u)}${chart.whirl.panel.equal ? `, ${x[0]} ${valued(line.x[i], x[1])}` : ''}`
-        + (line.more || []).map(([what, unit, v]) => `, ${what} ${valued(v[i], unit)}`).join('') + (style && style.t ? `, ${style.t}` : '');
+      return `${name}${valued(line.y[i], line.u == null ? y[1] : line.u, line.b && line.b[i])}${chart.whirl.panel.equal ? `, ${x[0]} ${valued(line.x[i], x[1])}` : ''}`
+        + (line.more || []).map(([what, unit, v, bar]) => `, ${what} ${valued(v[i], unit, bar && bar[i])}`).join('') + (style && style.t ? `, ${style.t}` : '');
     }
 
     panel(row, panel, k) {

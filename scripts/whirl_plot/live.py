@@ -27,6 +27,7 @@ CHARTS = {
     "campbell": "live_modes.campbell", "shapes-3d": "live_modes.shapes", "response": "live_response.shaft", "response-bearings": "live_response.journals",
     "history": "live_motion.history", "motion": "live_motion.motion", "transfer": "live_response.transfer", "run-up": "live_response.run_up", "equilibria": "live_branches.equilibria", "cycles-vertical": "live_branches.vertical",
     "cycles-horizontal": "live_branches.horizontal", "nodes": "live_branches.nodes", "bifurcations": "live_branches.together", "orbits": "live_branches.orbits",
+    "critical-speeds": "live_maps.critical", "loci": "live_maps.loci", "multipliers": "live_maps.multipliers",
 }
 
 STYLE = """
@@ -46,22 +47,29 @@ NOTE = ("Charts show the value under the cursor. Drag a frame to zoom, double-cl
         "With the keyboard: arrows move along the curves, + and \u2212 zoom, 0 shows the whole range. Paper shows the pictures instead.")
 
 
-def rounded(values, count=DIGITS):
-    """The values as a list of numbers of `count` significant digits, None where there is none: more cannot be seen and makes a page long."""
+def rounded(values, count=DIGITS, bars=None):
+    """The values as a list of numbers of `count` significant digits, None where there is none: more cannot be seen and makes a page long. A
+    value with a bar has at least the digits of the bar and one more."""
     values = np.asarray(values, float)
     size = np.abs(values)
     known = np.isfinite(values)
-    places = count - 1 - np.floor(np.log10(np.where(known & (size > 0), size, 1.0)))
+    first = np.floor(np.log10(np.where(known & (size > 0), size, 1.0)))
+    places = count - 1 - first
+    if bars is not None:
+        sure = np.isfinite(bars) & (np.asarray(bars) > 0)
+        places = np.where(sure, np.clip(2 - np.floor(np.log10(np.where(sure, bars, 1.0))), places, 14 - first), places)
     up, down = 10.0 ** np.clip(places, 0, 300), 10.0 ** np.clip(-places, 0, 300)
     short = np.rint(np.where(known, values, 0) / down * up) / up * down
     return [(int(v) if v == int(v) and abs(v) < 1e15 else v) if k else None for v, k in zip(short.tolist(), known.tolist())]
 
 
 def line(x, y, name=None, panel=0, option=None, colour=GREY, **more):
-    """A curve. `s` gives each point the style of the stretch behind it, `more` = [(name, unit, values)] are values beside y, `t` texts instead;
-    what nobody reads needs fewer `digits`."""
-    count = more.pop("digits", DIGITS)
-    found = {"x": rounded(x, count), "y": rounded(y, count), "c": colour}
+    """A curve. `bar` are the bars of y, `s` gives each point the style of the stretch behind it, `more` = [(name, unit, values, bars)] are
+    values beside y, `t` texts instead; what nobody reads needs fewer `digits`."""
+    count, bar = more.pop("digits", DIGITS), more.pop("bar", None)
+    found = {"x": rounded(x, count), "y": rounded(y, count, bar), "c": colour}
+    if bar is not None and np.any(np.isfinite(bar)):
+        found["b"] = rounded(bar, 3)
     if panel:
         found["p"] = panel
     if name is not None:
@@ -69,7 +77,7 @@ def line(x, y, name=None, panel=0, option=None, colour=GREY, **more):
     if option is not None:
         found["o"] = option
     if more.get("more"):
-        more["more"] = [(what, unit, rounded(values, 5)) for what, unit, values in more["more"]]
+        more["more"] = [(what, unit, rounded(values, 5, *bars), *(rounded(b, 3) for b in bars if b is not None)) for what, unit, values, *bars in more["more"]]
     return {**found, **{k: v for k, v in more.items() if v is not None}}
 
 
@@ -109,9 +117,10 @@ def library():
 def chart_of(study, what):
     """The chart in place of a picture as HTML; empty if there is none, or the library is not installed."""
     kind = "transfer" if getattr(study, "kind", "") == "frequency_response" else what if what in CHARTS else re.sub(r"-?\d+$", "", what)
-    if kind not in CHARTS or getattr(study, "kind", "") == "sweep" or library() is None:
+    made_by = "live_sweep.sweep" if getattr(study, "kind", "") == "sweep" else CHARTS.get(kind)
+    if made_by is None or library() is None:
         return ""
-    module, name = CHARTS[kind].split(".")
+    module, name = made_by.split(".")
     try:
         data = getattr(importlib.import_module(f"{__package__}.{module}"), name)(study, what)
     except whirl.Error:

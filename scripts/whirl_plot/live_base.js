@@ -20,7 +20,13 @@ const Live = (() => {
     return power >= -2 && power < 6 ? number(v) : `${first === 1 ? '' : first + '·'}10${raised(power)}`;
   };
   const axis = ([name, unit]) => unit ? `${name} [${unit}]` : name;
-  const valued = (v, unit) => unit ? `${number(v)} ${unit}` : number(v);
+  // A value and its bar: two digits of the bar, and the value cut to them.
+  const barred = (v, bar) => {
+    if (v == null || !(bar > 1e-9 * Math.abs(v))) return number(v);
+    const last = Math.floor(Math.log10(bar)) - 1, cut = n => (last > 0 ? Math.round(n / 10 ** last) * 10 ** last : n).toFixed(Math.min(12, Math.max(0, -last)));
+    return `${cut(v)} ± ${cut(bar)}`.replace(/-/g, '−');
+  };
+  const valued = (v, unit, bar) => unit ? `${barred(v, bar)} ${unit}` : barred(v, bar);
 
   // Finds what the tooltip shows: a mark if the cursor is on one, or else the nearest computed point. Panels over `x` show one point of each
   // curve, the nearest along x.

@@ -32,9 +32,10 @@ def campbell(study, _):
             at, height, damped, sense, border = with_borders(ranges, *(column[a:b] for column in (speed, frequency, decrement, whirl)))
             look = looks(styles, senses(sense), between(at, damped, border, ranges)) or None
             colour = colour_of(np.nanmin(damped)) if np.isfinite(damped).any() else GREY
-            lines.append(line(at * to_speed, height * to_frequency, f"mode {mode}", 0, colour=colour, s=look, more=[("log. decrement", "", damped)]))
+            bar, bar_of_damping = bars_at(study, mode, at, to_frequency)
+            lines.append(line(at * to_speed, height * to_frequency, f"mode {mode}", 0, colour=colour, s=look, bar=bar, more=[("log. decrement", "", damped, bar_of_damping)]))
             if damped_at_all:
-                lines.append(line(at * to_speed, damped, f"mode {mode}", 1, colour=colour, s=look, more=[("frequency", hertz, height * to_frequency)]))
+                lines.append(line(at * to_speed, damped, f"mode {mode}", 1, colour=colour, s=look, bar=bar_of_damping, more=[("frequency", hertz, height * to_frequency, bar)]))
     ends = np.array([every[0], every[-1]])
     frequencies, decrements = (np.concatenate([m[k] for m in modes]) for k in (2, 3))
     limit = min(np.nanmax(frequencies) * 1.06, 3 * ends[1])
@@ -49,6 +50,14 @@ def campbell(study, _):
         panels.append({"x": ("speed", unit), "y": ("logarithmic decrement", ""), "limits": rounded([low, high], 2), "span": panels[0]["span"], "height": 260, "places": panels[0]["places"],
                        "title": "Damping, unstable below zero"})
     return {"panels": panels, "lines": lines, "styles": styles.table, "keys": keys_of(styles)}
+
+
+def bars_at(study, mode, speeds, to_frequency):
+    """Bars of frequency and logarithmic decrement of a mode at these speeds; None where the study has none."""
+    rows = np.nonzero(study.get("spectrum/mode") == mode)[0]
+    rows = rows[np.argsort(study.get("spectrum/speed")[rows], kind="stable")]
+    bars = [study.get(f"spectrum/{k}_uncertainty") for k in ("frequency", "log_decrement")]
+    return [None if b is None else np.interp(speeds, study.get("spectrum/speed")[rows], b[rows]) * factor for b, factor in zip(bars, (to_frequency, 1))]
 
 
 def keys_of(styles):

@@ -3,7 +3,7 @@ import numpy as np
 
 from .canvas import Line2D, plt
 from .curves import hermite
-from .style import GREY, INK, save
+from .style import GREY, INK, runs, save
 from .units import WORDS as WORDS_OF_UNITS
 
 WORDS = {"meeting": "two meet", "meeting_over_second": "curve turns", "resonance_1_1": "1:1 resonance",
@@ -96,19 +96,22 @@ def borders(study):
     return x, y, border
 
 
-def draw_curve(axis, study):
-    """The curve: a line where it is a border of stability, thin dots where another motion has become unstable before."""
+def pieces(study):
+    """The smooth curve in pieces (x, y, whether it is a border of stability)."""
     x, y, border = borders(study)
     smoothed = smooth(x, y)
     parts = (len(smoothed[0]) - 1) // max(len(x) - 1, 1)
-    first = True
-    for k in np.flatnonzero(np.diff(border, prepend=not border[0]) != 0) if len(border) else []:
-        end = next((m for m in range(k, len(border)) if border[m] != border[k]), len(border))
-        piece = slice(k * parts, end * parts + 1)
-        style = {"linestyle": "-"} if border[k] else {"linestyle": ":", "linewidth": 1.0}
-        axis.plot(smoothed[0][piece], smoothed[1][piece], color=study.colour, label=described(study) if border[k] and first else "_", **style)
-        first = first and not border[k]
-    return bool(len(border)) and not border.all()
+    return [(*(v[a * parts:b * parts + 1] for v in smoothed), bool(border[a])) for a, b in runs(list(border))] if len(border) else []
+
+
+def draw_curve(axis, study):
+    """The curve: a line where it is a border of stability, thin dots where another motion has become unstable before."""
+    named = False
+    for x, y, border in pieces(study):
+        style = {"linestyle": "-"} if border else {"linestyle": ":", "linewidth": 1.0}
+        axis.plot(x, y, color=study.colour, label=described(study) if border and not named else "_", **style)
+        named = named or border
+    return any(not border for *_, border in pieces(study))
 
 
 def crossings(study, level):
@@ -189,34 +192,46 @@ def widest(mask):
     return np.unravel_index(np.argmax(depth), depth.shape)
 
 
-def draw_bars(axis, study):
-    """Bars at the points where they were computed, in the parameter in which they are shorter: a curve has none along itself."""
+def bars_of(study):
+    """(x, y, bar of x, bar of y) where bars were computed, zero in the parameter in which it is longer: a curve has none along itself."""
     names = ("parameter", "second", "parameter_uncertainty", "second_uncertainty", "uncertainty_computed")
     columns = [study.get(f"locus/{name}") for name in names]
     if any(c is None for c in columns):
-        return
+        return []
     x, y, across, upward, computed = columns
-    spans = np.ptp(x) or 1, np.ptp(y) or 1
+    spans, found = (np.ptp(x) or 1, np.ptp(y) or 1), []
     for k in np.flatnonzero(computed):
         lengths = np.nan_to_num([across[k] / spans[0], upward[k] / spans[1]], nan=np.inf)
         if np.isfinite(lengths.min()):
-            bar = {"xerr": across[k]} if lengths[0] <= lengths[1] else {"yerr": upward[k]}
-            axis.errorbar(x[k], y[k], fmt="none", ecolor=study.colour, elinewidth=1.2, **bar)
+            found.append((x[k], y[k], *((across[k], 0) if lengths[0] <= lengths[1] else (0, upward[k]))))
+    return found
+
+
+def of_one_pair(results):
+    """The curves over the same pair of parameters, that of the first one."""
+    studies = [s for s in results.studies if s.kind == "locus" and s.has("locus/parameter")]
+    pair = lambda s: (s.attribute("parameter"), last(s.attribute("second", "")))  # noqa: E731
+    return [s for s in studies if pair(s) == pair(studies[0])]
+
+
+def name_and_unit(study, key):
+    """Of the parameter or the second parameter."""
+    unit = study.attribute(f"{key}_unit")
+    return last(study.attribute(key)), WORDS_OF_UNITS.get(unit, unit) or ""
 
 
 def draw_together(results):
     """All curves over the same pair of parameters in one picture."""
-    studies = [s for s in results.studies if s.kind == "locus" and s.has("locus/parameter")]
+    studies = of_one_pair(results)
     if not studies:
         return []
-    pair = (studies[0].attribute("parameter"), last(studies[0].attribute("second", "")))
-    studies = [s for s in studies if (s.attribute("parameter"), last(s.attribute("second", ""))) == pair]
     figure, axis = plt.subplots(figsize=(8, 5.5))
     points = []
     dotted = False
     for study in studies:
         dotted = draw_curve(axis, study) or dotted
-        draw_bars(axis, study)
+        for x, y, across, upward in bars_of(study):
+            axis.errorbar(x, y, **({"xerr": across} if across else {"yerr": upward}), fmt="none", ecolor=study.colour, elinewidth=1.2)
         kinds = study.get("codimension_two/type")
         if kinds is not None and len(kinds):
             points += zip(kinds, np.atleast_1d(study.get("codimension_two/parameter")),
@@ -225,9 +240,8 @@ def draw_together(results):
     regions(axis, studies)
     label(axis, points)
     for put, key in ((axis.set_xlabel, "parameter"), (axis.set_ylabel, "second")):
-        unit = studies[0].attribute(f"{key}_unit")
-        unit = WORDS_OF_UNITS.get(unit, unit)
-        put(last(studies[0].attribute(key)) + (f" [{unit}]" if unit else ""))
+        name, unit = name_and_unit(studies[0], key)
+        put(name + (f" [{unit}]" if unit else ""))
     return save(figure, results.whole("curves of bifurcations"), "loci", "where motions lose stability, over two parameters",
                 [line for line in axis.get_lines() if not line.get_label().startswith("_")]
                 + [Line2D([], [], color=GREY, linestyle=":", linewidth=1.0, label="no border: something else is unstable there already")] * dotted)

@@ -82,10 +82,19 @@ def plain(text):
     return "".join(c if c.isalnum() or c in ".+-" else "_" for c in text).strip("_.") or "study"
 
 
+BRANCHES = (("equilibrium_branch", ("y",)), ("cycle_branch", ("y_max", "y_min")))  # kinds of study, and the columns that are drawn
+
+
+def scale_of_journal(subject, b):
+    """Factor of positions in a bearing: per clearance of the variant, where it has one."""
+    own = subject.get("bearings/clearance")
+    return 1 / own[b] if own is not None and len(own) > b and own[b] > 0 else 1
+
+
 def draw_branches(study):
     """Vertical position of every journal: equilibria, or the highest and the lowest point of cycles."""
     files = []
-    for kind, columns in (("equilibrium_branch", ("y",)), ("cycle_branch", ("y_max", "y_min"))):
+    for kind, columns in BRANCHES:
         for name, rows in each(study, kind, "branch/parameter", *(f"branch/{c}" for c in columns)):
             followed = [(c, Followed(s)) for _, c, s in rows]
             first = rows[0][2]
@@ -95,8 +104,7 @@ def draw_branches(study):
             figure, axes, _ = grid_of(len(places), width=4.2, height=3.0, columns=2 if len(places) < 5 else 3)
             for b, (axis, place) in enumerate(zip(axes, places)):
                 for (colour, branch), (_, _, subject) in zip(followed, rows):
-                    own = subject.get("bearings/clearance")
-                    scale = 1 / own[b] if own is not None and len(own) > b and own[b] > 0 else 1
+                    scale = scale_of_journal(subject, b)
                     curves = [branch.column(c)[:, b] for c in columns]
                     for values in curves:
                         branch.draw(axis, values, colour, scale, linewidth=1.3)
@@ -216,31 +224,40 @@ def draw_films(study):
     return files
 
 
+COEFFICIENTS = {"stiffness": ("K", "N/m"), "damping": ("C", "N s/m")}
+
+
+def coefficients_of(study, words):
+    """(bearing, places, {name: values}, unit) of the coefficients of each film over what the sweep changes, where there are enough variants
+    for a curve."""
+    quantity, (letter, unit) = axis_of(study), COEFFICIENTS[words]
+    heads = dict.fromkeys(c.rsplit(".K.", 1)[0] for c in study.group.get("table", ()) if c.endswith(".K.xx"))
+    if quantity is None or len(quantity[1]) < 5:
+        return
+    order = np.argsort(quantity[1])
+    for head in heads:
+        entries = {f"{letter} {c}": study.get(f"table/{head}.{letter}.{c}")[order] for c in ("xx", "xy", "yx", "yy")}
+        factor, shown = scale_of(unit, max(np.nanmax(np.abs(v)) for v in entries.values()))
+        yield head.split(".bearing.")[-1], np.array(quantity[1])[order], {name: values * factor for name, values in entries.items()}, shown
+
+
 def draw_coefficients(study):
-    """Stiffness and damping of the films over what the sweep changes, where there are enough variants for a curve."""
-    quantity = axis_of(study)
-    if quantity is None or not study.has("table"):
-        return []
-    label, at = quantity
-    columns = list(study.group["table"])
-    heads = dict.fromkeys(c.rsplit(".K.", 1)[0] for c in columns if c.endswith(".K.xx"))
-    if len(at) < 5 or not heads:
-        return []
-    order = np.argsort(at)
+    """Stiffness and damping of the films over what the sweep changes."""
     files = []
-    for letter, unit, words in (("K", "N/m", "stiffness"), ("C", "N s/m", "damping")):
-        figure, axes, _ = grid_of(len(heads), width=3.4, height=2.9, columns=min(3, len(heads)))
-        for axis, head in zip(axes, heads):
-            entries = {c: study.get(f"table/{head}.{letter}.{c}")[order] for c in ("xx", "xy", "yx", "yy")}
-            factor, shown = scale_of(unit, max(np.nanmax(np.abs(v)) for v in entries.values()))
-            for k, values in enumerate(entries.values()):
+    for words in COEFFICIENTS:
+        found = list(coefficients_of(study, words))
+        if not found:
+            continue
+        figure, axes, _ = grid_of(len(found), width=3.4, height=2.9, columns=min(3, len(found)))
+        for axis, (bearing, at, entries, unit) in zip(axes, found):
+            for colour, values in zip(COLOURS, entries.values()):
                 known = np.isfinite(values)
-                axis.plot(*smooth(np.array(at)[order][known], values[known] * factor), color=COLOURS[k], linewidth=1.4)
-            axis.set_title(head.split(".bearing.")[-1])
-            axis.set_xlabel(label)
-            axis.set_ylabel(f"{words} [{shown}]")
+                axis.plot(*smooth(at[known], values[known]), color=colour, linewidth=1.4)
+            axis.set_title(bearing)
+            axis.set_xlabel(axis_of(study)[0])
+            axis.set_ylabel(f"{words} [{unit}]")
             axis.axhline(0, color=INK, linewidth=0.6)
-        handles = [Line2D([], [], color=COLOURS[k], label=f"{letter} {c}") for k, c in enumerate(("xx", "xy", "yx", "yy"))]
+        handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(COLOURS, found[0][2])]
         files += save(figure, study, words, "minus the derivatives of the film's force on the journal", handles)
     return files
 
@@ -301,42 +318,57 @@ def label_of(study, head, unit):
     return f"{name} [{unit}]" if unit != "1" else name
 
 
-def draw_trends(study):
-    """Where bifurcations lie over what the sweep changes, with their bars. Lines join what is the same bifurcation."""
+def courses_of(study):
+    """(name of a study, kind of its bifurcations, their unit, courses) of each panel. A course is what is the same bifurcation over what the
+    sweep changes: rows (place, value, bar or zero, variant)."""
     where = axis_of(study)
     columns = {c["name"]: c for c in study.summary.get("columns", [])}
     if where is None or any(t["beside"] for t in study.summary["trends"]):
         return []
-    label, at = where
-    panels = {}
+    at, panels = where[1], {}
     for name in columns:
         head, kind, number = (name.rsplit(".", 2) + ["", ""])[:3]
         if kind in MARKS and number.isdigit():
             panels.setdefault((head, kind), []).append(int(number))
+    rows = [r for r in np.argsort(at, kind="stable") if np.isfinite(at[r])]
+    names, found = [str(n) for n in np.atleast_1d(study.get("table/variant"))], []
+    for (head, kind), numbers in panels.items():
+        events, courses, before = events_of(study, head, kind, names), [], {}
+        last = None
+        for r in rows:
+            here = {n: c for n, c in ((n, columns[f"{head}.{kind}.{n}"]) for n in numbers) if c["values"][r] is not None}
+            joined = {} if last is None or not here else {j + 1: i + 1 for i, j in pairs_of(events[last], events[r])}
+            now = {}
+            for n, c in here.items():
+                now[n] = before.get(joined.get(n))
+                if now[n] is None:
+                    now[n] = []
+                    courses.append(now[n])
+                now[n].append((at[r], c["values"][r], c["uncertainties"][r] or 0, names[r]))
+            if here:
+                before, last = now, r
+        found.append((head, kind, columns[f"{head}.{kind}.{numbers[0]}"]["unit"], courses))
+    return found
+
+
+def wide(places):
+    """Whether places want a logarithmic axis."""
+    return len(places) > 1 and min(places) > 0 and max(places) / min(places) > 20
+
+
+def draw_trends(study):
+    """Where bifurcations lie over what the sweep changes, with their bars. Lines join what is the same bifurcation."""
+    panels = courses_of(study)
     if not panels:
         return []
-    rows = [r for r in np.argsort(at, kind="stable") if np.isfinite(at[r])]
     figure, axes, _ = grid_of(len(panels), width=3.6, height=2.9, columns=3)
-    names = [str(n) for n in np.atleast_1d(study.get("table/variant"))]
-    for axis, ((head, kind), numbers) in zip(axes, panels.items()):
-        events = events_of(study, head, kind, names)
-        course = {}  # (row, number) -> which course it belongs to
-        there = [r for r in rows if any(columns[f"{head}.{kind}.{n}"]["values"][r] is not None for n in numbers)]
-        for before, r in zip([None] + there, there):
-            here = [n for n in numbers if columns[f"{head}.{kind}.{n}"]["values"][r] is not None]
-            joined = {} if before is None else {j + 1: i + 1 for i, j in pairs_of(events[before], events[r])}
-            for n in here:
-                c = columns[f"{head}.{kind}.{n}"]
-                old = joined.get(n)
-                course[r, n] = course[before, old] if old is not None and (before, old) in course else len(set(course.values()))
-                colour = COLOURS[course[r, n] % len(COLOURS)]
-                axis.errorbar(at[r], c["values"][r], yerr=c["uncertainties"][r] or 0, marker=MARKS[kind][1], color=colour, **BAR)
-                if old is not None and (before, old) in course:
-                    axis.plot([at[before], at[r]], [columns[f"{head}.{kind}.{old}"]["values"][before], c["values"][r]], color=colour, linewidth=1.2)
+    for axis, (head, kind, unit, courses) in zip(axes, panels):
+        for k, course in enumerate(courses):
+            place, value, bar, _ = zip(*course)
+            axis.errorbar(place, value, yerr=bar, marker=MARKS[kind][1], color=COLOURS[k % len(COLOURS)], **BAR)
         axis.set_title(f"{head}: {MARKS[kind][2]}")
-        axis.set_xlabel(label)
-        axis.set_ylabel(label_of(study, head, columns[f"{head}.{kind}.1"]["unit"]))
-        known = [at[r] for r in rows]
-        if known[0] > 0 and known[-1] / known[0] > 20:
+        axis.set_xlabel(axis_of(study)[0])
+        axis.set_ylabel(label_of(study, head, unit))
+        if wide([row[0] for course in courses for row in course]):
             axis.set_xscale("log")
     return save(figure, study, "trends", "with error bars; a line joins bifurcations of like stability whose whirl frequencies differ by less than 20 %")

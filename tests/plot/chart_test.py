@@ -19,7 +19,8 @@ from whirl_plot.subject import Drawn  # noqa: E402
 
 RPM = 30 / np.pi
 CHARTS = {"modes.campbell", "modes.shapes-3d", "generator_pair.response", "generator_pair.response-bearings", "balanced.equilibria", "pair_G2.5.cycles-vertical",
-          "pair_G2.5.cycles-horizontal", "pair_G2.5.orbits", "pair_G6.3.cycles-vertical", "pair_G6.3.cycles-horizontal", "pair_G6.3.orbits", "period_two.history", "period_two.motion", "bifurcations", "disc.response-node.7.x"}
+          "pair_G2.5.cycles-horizontal", "pair_G2.5.orbits", "pair_G6.3.cycles-vertical", "pair_G6.3.cycles-horizontal", "pair_G6.3.orbits", "period_two.history", "period_two.motion", "bifurcations", "disc.response-node.7.x",
+          "pair_G2.5.multipliers", "pair_G6.3.multipliers", "undamped.critical-speeds", "loci", "clearances.trends", "clearances.balanced"}
 
 
 @contextlib.contextmanager
@@ -78,6 +79,54 @@ def oscillator(root):
     group["machine"].attrs["frequency"] = np.nan
 
 
+def maps(root):
+    """Critical speeds and a curve of bifurcations with bars, one of them no border; modes with bars."""
+    k = np.geomspace(1e6, 1e9, 7)
+    speeds = np.sqrt(k / 1e4)[:, None] * [1, 3]
+    synthetic.put(synthetic.study(root, "undamped", "critical_speed_map").create_group("map"), stiffness=k, forward=1.1 * speeds, backward=speeds,
+                  forward_uncertainty=1e-4 * speeds, backward_uncertainty=np.where(speeds > 20, 1e-4 * speeds, np.nan))
+    g = synthetic.study(root, "flips", "locus", parameter="speed", parameter_unit="rpm", second="bearings.B1.clearance", second_unit="um", bifurcation="flip", of="pair, G6.3", start=2)
+    x, y = np.array([4000, 4200, 4300, 4250.0]), np.array([100, 110, 120, 130.0])
+    synthetic.put(g.create_group("locus"), parameter=x, second=y, others_unstable=[0, 0, 0, 2], parameter_uncertainty=[1.23456, 1, np.nan, 2], second_uncertainty=[0.5, 0.4, 0.3, 0.2],
+                  uncertainty_computed=[1.0, 0, 1, 0])
+    synthetic.put(g.create_group("codimension_two"), type=["resonance_1_2"], parameter=[4222.2], second=[111.11], parameter_uncertainty=[0.35], second_uncertainty=[np.nan])
+    spectrum = root["studies/modes/spectrum"]
+    synthetic.put(spectrum, frequency_uncertainty=1e-3 * spectrum["frequency"][()], log_decrement_uncertainty=np.full(len(spectrum["speed"]), 2e-4))
+
+
+def values_of_maps(charts, results):
+    chart, table = charts["undamped.critical-speeds"], results["undamped"]
+    forward, backward = named(chart, "no. 2")
+    assert close(forward["y"], table.get("map/forward")[:, 1] * RPM) and close(forward["b"], table.get("map/forward_uncertainty")[:, 1] * RPM, 1e-2)
+    assert named(chart, "no. 1")[1]["b"][0] is None and chart["panels"][0]["log"] and chart["panels"][0]["logx"] and chart["styles"][int(backward["s"][0])]["t"] == "backward whirl"
+    # A value is cut two digits behind the first one of its bar, not before.
+    assert live.rounded([123456.789, 2.0, 1.0], 6, [0.0123, np.nan, 0]) == [123456.789, 2, 1] and live.rounded([1234.56789], 6, [3.0]) == [1234.57]
+
+    chart = charts["loci"]
+    points, = [c for c in named(chart, "flips") if c.get("bare")]
+    assert points["t"][0] == "flips: speed 4000.0 \u00b1 1.2 rpm, clearance 100.00 \u00b1 0.50 \u00b5m" and "no border" in points["t"][3] and "no border" not in points["t"][1], points["t"]
+    assert {c.get("d") for c in named(chart, "flips") if c.get("quiet") and not c.get("w")} == {None, 2}, "borders and others look alike"
+    mark, = named(chart, "points of codimension two")
+    assert mark["t"] == ["1:2 resonance: speed 4222.20 \u00b1 0.35 rpm, clearance 111.11 \u00b5m"], mark["t"]
+
+    chart, study = charts["pair_G6.3.multipliers"], results["pair, G6.3"]
+    sizes = [[abs(v) for v in row] for row in study.multipliers]
+    drawn = [(at, size) for c in named(chart, "modulus") for at, size in zip(c["at"], c["y"])]
+    assert len(drawn) == 4 * 140 and all(min(abs(size - s) for s in sizes[at]) < 1e-4 for at, size in drawn), "a modulus that no multiplier has"
+    unstable = [(at, s == "1") for c in named(chart, "modulus") for at, s in zip(c["at"], c["s"])]
+    assert all(any(grown for point, grown in unstable if point == k) == (max(sizes[k]) > 1) for k in range(140)), "unstable multipliers"
+    plane = [c for c in named(chart, "modulus", 1) if c["f"] == 0]
+    assert len(plane) == 1 and np.allclose(sorted(np.hypot(plane[0]["x"], plane[0]["y"])), sorted(v for v in sizes[0] if v), atol=1e-4), plane
+    assert [words for _, words in chart["panels"][0]["places"]].count("PD") == 2
+
+    chart = charts["clearances.trends"]
+    texts = [t for c in chart["lines"] for t in c.get("t", [])]
+    assert sorted(texts) == ["as given: 5025 \u00b1 12 rpm", "narrow: 4000 rpm", "wide: 6500.0 \u00b1 9.0 rpm"] and chart["panels"][0]["title"] == "balanced: Hopf" and chart["panels"][0]["y"] == ["speed", "rpm"], texts
+    chart, own = charts["clearances.balanced"], results["balanced"]
+    wide, = [c for c in named(chart, "wide", 0, 2) if c.get("bare")]
+    assert close(wide["y"], 1.2 * own.get("branch/y")[:, 2] / synthetic.CLEARANCE[2]) and chart["panels"][0]["y"] == ["y / c", ""] and len({c["c"] for c in chart["lines"] if c.get("bare")}) == 3
+
+
 def values(folder, charts):
     with Drawn(folder) as results:
         # Campbell: frequency and damping of each mode, red where it grows.
@@ -86,11 +135,13 @@ def values(folder, charts):
         top, = named(chart, "mode 1")
         assert close(top["x"], study.get("spectrum/speed")[mode] * RPM) and close(top["y"], study.get("spectrum/frequency")[mode] / (2 * np.pi))
         assert top["more"][0][0] == "log. decrement" and close(top["more"][0][2], study.get("spectrum/log_decrement")[mode], 1e-4)
+        assert close(top["b"], 1e-3 * study.get("spectrum/frequency")[mode] / (2 * np.pi), 1e-2) and set(top["more"][0][3]) == {2e-4}, "bars of modes"
         grows = [chart["styles"][int(s, 36)]["c"] == style.BAD for s in top["s"]]
         decrement = study.get("spectrum/log_decrement")[mode]
         assert any(grows) and not all(grows) and grows == list((decrement[:-1] < 0) & (decrement[1:] < 0)), grows
         assert {k["t"] for k in chart["keys"]} >= {"unstable", "forward", "backward"} and len(named(chart, "critical speeds")[0]["t"]) == 5
 
+        values_of_maps(charts, results)
         # Bode: amplitude and lag, gaps without an answer, peaks that are motions.
         chart, study = charts["generator_pair.response"], results["generator pair"]
         answer = study.get("response/answer") > 0
@@ -152,6 +203,7 @@ def page(folder):
             root[f"studies/{name}/orbits"]["point"] = np.linspace(0, 139, 20).astype(int)
         root["studies/pair, G6.3"].attrs["end"] = "the film is broken through </script><b>"
         oscillator(root)
+        maps(root)
     with with_library("/*! a library */"):
         done = command.call("report", folder)
         assert done.returncode == 0 and not done.stderr, done.stderr
