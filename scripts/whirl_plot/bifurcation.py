@@ -220,13 +220,13 @@ def draw_equilibria(study):
     if growth is not None and not np.any(x) and not np.any(y):
         shown = []  # nothing but the origin, without gravity and films
     figure, axes, _ = grid_of(len(shown) + (growth is not None))
-    scale, unit = study.measure(np.concatenate([x, y]))
     for axis, b in zip(axes, shown):
+        scale, unit = study.measure(np.concatenate([x[:, b], y[:, b]]))
         branch.draw(axis, y[:, b], Y, scale)
         branch.draw(axis, x[:, b], X, scale)
         branch.mark(axis, [y[:, b], x[:, b]], scale)
         finish(axis, names[b], f"position [{unit}]", parameter_label(study))
-        least_span(axis, scale * max(np.abs(x).max(), np.abs(y).max()))
+        least_span(axis, scale * max(np.abs(x[:, b]).max(), np.abs(y[:, b]).max()))
         mark_walls(axis, study, b, scale)
         over_speed(axis, study)
     if growth is not None:

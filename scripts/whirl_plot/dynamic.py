@@ -40,7 +40,7 @@ def draw_block(study, what, pairs, over, along, axis_label, lines, colours, labe
             if letter == "c":
                 axis.set_xlabel(axis_label)
     handles = [Line2D([], [], color=c, marker=".", label=label) for c, label in zip(colours, labels)]
-    note = "first letter: force (moment), second: motion (slope dx/dz, dy/dz); the force is minus these; bands: error of the film mesh"
+    note = "K = \u2212dF/dx, C = \u2212dF/d(dx/dt); first index: force (moment), second: motion (x', y': slopes dx/dz, dy/dz); bands: error of the film mesh"
     return save(figure, study, f"coefficients-{what}-{'frequency' if along == 1 else 'speed'}", note, handles)
 
 
@@ -51,7 +51,7 @@ def draw(study):
     ratio, speed = study.get("coefficients/ratio"), study.get("coefficients/speed")
     files = []
     for what, pairs in blocks_of(study):
-        if len(ratio) > 1:
+        if len(ratio) > (2 if len(speed) > 1 else 1):  # two frequencies are no course; those of several speeds stand over the speed
             colours = [INK] if len(speed) == 1 else list(plt.cm.viridis(np.linspace(0, 0.9, len(speed))))
             files += draw_block(study, what, pairs, ratio, 1, r"frequency $\omega/\Omega$", range(len(speed)), colours,
                                 [f"{s:.6g} rad/s" for s in speed])

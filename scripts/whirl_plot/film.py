@@ -77,5 +77,5 @@ def draw(study):
             right.plot(theta[i], z[j], "+", color="white", markersize=8)
             right.set_title(f"{name}: film thickness, smallest {thickness.min():.4g} {unit} at {theta[i] % 360:.1f} deg")
         hatched = "; hatched: the film is ruptured, and the gap is not full" if partly else "; hatched: no pressure, the film is ruptured or its suction cut off"
-        files += save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure, smallest thickness" + hatched * bool(ruptured))
+        files += save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure and smallest thickness of the nodes" + hatched * bool(ruptured))
     return files

@@ -3,12 +3,12 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .canvas import plt
-from .style import BAD, COLOURS, GREY, INK, ON_PRESSURE, PRESSURE, least_span, save, ticks_at
+from .style import BAD, COLOURS, GREY, INK, ON_PRESSURE, PRESSURE, grid_of, least_span, save, ticks_at
 from .thd_maps import angle_ticks
 from .units import digits
 
-CURVES = (("load", 1, "load [N]"), ("attitude", 180 / np.pi, "attitude angle [deg]"), ("normal_flow", 1, "flow [l/min, normal]"), ("power_loss", 1, "power loss [W]"),
-          ("knudsen", 1, "Knudsen number"), ("factorisations", 1, "factorisations"))
+CURVES = (("load", 1, "load [N]"), ("attitude", 180 / np.pi, "attitude angle [deg]"), ("min_thickness", 1e6, "thinnest film [\u00b5m]"), ("max_pressure", 1e-6, "largest pressure [MPa, absolute]"),
+          ("power_loss", 1, "power loss [W]"), ("knudsen", 1, "Knudsen number"), ("normal_flow", 1, "flow [l/min, normal]"))
 
 
 def draw_curves(study):
@@ -16,21 +16,19 @@ def draw_curves(study):
     if not study.has("curves/speed", "curves/eccentricity", "curves/load") or len(study.get("curves/eccentricity")) < 2:
         return []
     e, speeds = study.get("curves/eccentricity"), study.get("curves/speed")
-    figure, axes = plt.subplots(2, 3, figsize=(11.2, 6.2), sharex=True)
-    for axis, (name, factor, label) in zip(axes.ravel(), CURVES):
+    shown = [c for c in CURVES if study.has(f"curves/{c[0]}") and np.any(study.get(f"curves/{c[0]}") != 0)]  # a film without a supply has no flow
+    figure, axes, _ = grid_of(len(shown), 2.8, 2.6, -(-len(shown) // 2))
+    for axis, (name, factor, label) in zip(axes, shown):
         values = study.get(f"curves/{name}")
         for k, speed in enumerate(speeds):
-            axis.plot(e, factor * values[k], "-o", markersize=3.5, color=COLOURS[k % len(COLOURS)], label=f"{speed:.4g} rad/s")
+            axis.plot(e, factor * values[k], "-o" if len(e) > 2 else "o", markersize=3.5, color=COLOURS[k % len(COLOURS)], label=f"{speed:.4g} rad/s")
         axis.set_ylabel(label)
-        if factor == 1 and name != "factorisations":
-            axis.set_ylim(bottom=0)
+        axis.set_xlabel("eccentricity, in clearances")
         if name == "attitude":
             least_span(axis, 1, 2)
-        if name == "factorisations":
-            axis.set_ylim(0, values.max() + 1)
-    for axis in axes[-1]:
-        axis.set_xlabel("eccentricity, in clearances")
-    return save(figure, study, "gas-curves", "journal held in the given direction; attitude from the load, with the rotation", handles=axes[0, 0].get_legend_handles_labels()[0])
+        else:
+            axis.set_ylim(bottom=0)
+    return save(figure, study, "gas-curves", "journal held in the given direction; attitude from the load, with the rotation", handles=axes[0].get_legend_handles_labels()[0])
 
 
 def draw_isobars(study):
@@ -54,7 +52,7 @@ def draw_isobars(study):
         angle_ticks(axis, theta[0], theta[-1])
         figure.colorbar(filled, ax=axis, label="pressure [MPa, absolute]", pad=0.015, ticks=MaxNLocator(5))
     axes[-1, 0].set_xlabel(r"$\theta$ from $+x$, with the rotation [deg]")
-    return save(figure, study, "gas-isobars", f"eccentricity {e[-1]:.3g} clearances; linear between nodes; the dip in the jet behind an orifice is not modelled")
+    return save(figure, study, "gas-isobars", f"eccentricity {e[-1]:.3g} clearances; linear between nodes" + "; the dip in the jet behind an orifice is not modelled" * np.any(study.get("curves/mass_flow", 0.0) != 0))
 
 
 def draw_meshes(study):
@@ -111,7 +109,7 @@ def draw_gas(results, studies, what):
         axis.loglog(p, 1e6 * study.get(f"knudsen/{name}"), color=colour, label=label)
     for s, line in zip(studies, ("--", ":", "-.", "-") * len(studies)):
         least = 1e6 * np.nanmin(s.get("curves/min_thickness"))
-        axis.axhline(least, color=GREY, linestyle=line, label=f"least film of {s.name}, {digits(float(least), 3)} µm")
+        axis.axhline(least, color=GREY, linestyle=line, label=f"thinnest film of the study '{s.name}', {digits(float(least), 3)} µm")
     axis.set_xlabel("pressure [MPa, absolute]")
     axis.set_ylabel("film thickness [µm]")
     return save(figure, results.whole("rarefaction of the gas"), what, "", handles=axis.get_legend_handles_labels()[0], columns=2)

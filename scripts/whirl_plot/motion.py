@@ -67,8 +67,14 @@ def draw_exponents(axis, running, speed, value, uncertainty):
     axis.legend(loc="best")
 
 
+def stands_still(study):
+    """Whether nothing moves but by rounding: pictures of it would be empty."""
+    x, y = study.get("orbit/x"), study.get("orbit/y")
+    return x is None or y is None or max(np.ptp(x), np.ptp(y)) <= 1e-12 * max(np.abs(x).max(), np.abs(y).max())
+
+
 def draw(study):
-    if not study.has("orbit/x", "poincare/x", "spectrum/x"):
+    if not study.has("orbit/x", "poincare/x", "spectrum/x") or stands_still(study):
         return []
     first, later = twins(study)
     if first is not None:
@@ -132,7 +138,7 @@ LATEST = 24  # revolutions of a history: more are a band
 
 def draw_history(study):
     """x and y over the time, the latest revolutions; black: once per revolution."""
-    if not study.has("orbit/x", "orbit/y") or study.attribute("motion", "") == "fixed_point":
+    if not study.has("orbit/x", "orbit/y") or study.attribute("motion", "") == "fixed_point" or stands_still(study):
         return []
     scale, unit = study.micro
     samples = int(round(study.attribute("samples", 0)))
@@ -159,7 +165,7 @@ def draw_history(study):
 
 def draw_full_spectrum(study, top=4.0):
     """The circles that the orbits are made of, over the frequency with its sign: forward to the right, backward to the left."""
-    if not study.has("full_spectrum/order", "full_spectrum/amplitude") or study.attribute("motion", "") == "fixed_point":
+    if not study.has("full_spectrum/order", "full_spectrum/amplitude") or study.attribute("motion", "") == "fixed_point" or stands_still(study):
         return []
     first, later = twins(study)
     if study.has("places/name") or first is not None:

@@ -204,7 +204,7 @@ def draw_positions(study):
         turn_arrow(axis)
         axis.plot([0, x[b] * 1e6], [0, y[b] * 1e6], color=INK, linewidth=1.0)
         axis.plot(x[b] * 1e6, y[b] * 1e6, "o", color=Y, markersize=6, markeredgecolor="white")
-        lines = f"({x[b] * 1e6:.1f}, {y[b] * 1e6:.1f}) \u00b5m"
+        lines = "({:.1f}, {:.1f}) \u00b5m".format(*(round(v[b] * 1e6, 1) + 0.0 for v in (x, y)))  # no minus before zero
         if study.has("bearings/clearance"):
             lines += distance_in_words(study, b, x[b], y[b])
         finish(axis, name if load is None else f"{name}: {person(np.atleast_1d(load)[b], 'N', 4)}")

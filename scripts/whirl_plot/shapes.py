@@ -154,6 +154,8 @@ def tables_of(study):
 
 
 def draw_modes(study, shown=12):
+    if len(np.atleast_1d(study.get("shapes/z", 0.0))) < 2:
+        return []  # a rigid rotor has one node, and a point no shape
     files, found = [], list(tables_of(study))
     for speed, z, shapes in found:
         # What dies within a turn is no vibration; unless nothing else is there.

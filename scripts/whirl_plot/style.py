@@ -124,9 +124,19 @@ def warning_lines(warnings, width, most=3):
     return lines + ([f"and {left} more warning{'s' if left > 1 else ''} in the report"] if left else [])
 
 
+def fewer_ticks(figure):
+    """Fewer numbers along x: those of five digits and more would run into each other below panels that stand side by side."""
+    from matplotlib.ticker import AutoLocator, MaxNLocator
+    for axis in figure.axes:
+        spec = getattr(axis, "get_subplotspec", lambda: None)()
+        if spec is not None and spec.get_gridspec().ncols > 2 and type(axis.xaxis.get_major_locator()) is AutoLocator and max(map(abs, axis.get_xlim())) >= 5e4:
+            axis.xaxis.set_major_locator(MaxNLocator(3))
+
+
 def save(figure, study, what, note="", handles=(), columns=6, of=""):
     """Adds whose picture it is, the legend below, the conventions and the warnings of the study, and writes it; `of` is what is repeated
     in a sweep."""
+    fewer_ticks(figure)
     height = figure.get_figheight()
     columns = columns_of([h.get_label() for h in handles], figure.get_figwidth(), columns)
     rows = -(-len(handles) // columns)
