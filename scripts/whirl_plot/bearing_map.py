@@ -7,7 +7,7 @@ from .style import GREY, INK, grid_of, save, ticks_at
 
 ENTRIES = ("xx", "xy", "yx", "yy")
 LOAD = r"Sommerfeld number $S = (c/R)^2 F/(\mu\Omega LD)$"
-SCALE = r"$k^* = c\,(c/R)^2 k/(\mu\Omega LD)$,  $b^* = c\,(c/R)^2 b/(\mu LD)$"
+SCALE = r"$k^* = c\,(c/R)^2 K/(\mu\Omega LD)$,  $c^* = c\,(c/R)^2 C/(\mu LD)$"
 
 
 def title_of(study):

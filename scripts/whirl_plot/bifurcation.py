@@ -171,6 +171,13 @@ def over_speed(axis, study):
         mark_service(axis, study, study.attribute("parameter_unit", ""))
 
 
+def has_liner(study, b):
+    """Whether a bearing has an elastic liner, which gives way: journals go beyond the wall of the deck."""
+    known, names = (study.results.deck or {}).get("bearings") or {}, study.get("bearings/name")
+    bearing = known.get(names[b]) if names is not None and b < len(names) else None
+    return str(((bearing or {}).get("film") or {}).get("type", "")).startswith("compliant")
+
+
 def mark_walls(axis, study, b, scale, direction="y"):
     """Lines where the wall of the bore stands above and below the middle (y) or beside it (x), if a branch comes near."""
     if not study.has("bearings/clearance") or study.has("places/name"):
@@ -182,7 +189,7 @@ def mark_walls(axis, study, b, scale, direction="y"):
         if np.isfinite(at) and low - 0.15 * (high - low) <= at <= high + 0.15 * (high - low):
             axis.set_ylim(min(low, at - 0.02 * (high - low)), max(high, at + 0.02 * (high - low)))
             axis.axhline(at, color=GREY, linewidth=0.9, zorder=0.6)
-            axis.annotate("wall", (1, at), xycoords=axis.get_yaxis_transform(), xytext=(-2, 1), textcoords="offset points", ha="right", va="bottom", fontsize=6.5,
+            axis.annotate("undeformed wall" if has_liner(study, b) else "wall", (1, at), xycoords=axis.get_yaxis_transform(), xytext=(-2, 1), textcoords="offset points", ha="right", va="bottom", fontsize=6.5,
                           color=GREY)
 
 

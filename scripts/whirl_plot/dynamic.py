@@ -1,7 +1,7 @@
 """Stiffness and damping of one bearing over the frequency, and where there are several speeds over the speed."""
 import numpy as np
 
-from .canvas import Line2D, plt
+from .canvas import Line2D, plain_numbers, plt
 from .style import INK, save
 
 PORTS = ("x", "y", "slope_x", "slope_y")
@@ -36,6 +36,7 @@ def draw_block(study, what, pairs, over, along, axis_label, lines, colours, labe
             axis.axhline(0, color=INK, linewidth=0.7)
             if along == 1:
                 axis.set_xscale("log")
+                plain_numbers(axis.xaxis)
             axis.set_title(f"${letter}_{{{SHORT[pair[0]]}{SHORT[pair[1]]}}}$ [{UNITS[letter][slopes]}]")
             if letter == "c":
                 axis.set_xlabel(axis_label)

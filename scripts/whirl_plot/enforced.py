@@ -1,7 +1,7 @@
 """Stiffness and damping of one bearing by enforced motion: over the amplitude, and over the frequency beside the perturbation."""
 import numpy as np
 
-from .canvas import Line2D, plt
+from .canvas import Line2D, plain_numbers, plt
 from .dynamic import SHORT, UNITS, blocks_of, name_of
 from .style import DASHED, INK, save
 
@@ -30,12 +30,13 @@ def draw_block(study, what, pairs, over, along, label, shown, colours, labels, o
             axis.axhline(0, color=INK, linewidth=0.7)
             if along == 1:
                 axis.set_xscale("log")
+                plain_numbers(axis.xaxis)
             axis.set_title(f"${letter}_{{{SHORT[pair[0]]}{SHORT[pair[1]]}}}$ [{UNITS[letter][slopes]}]")
             if letter == "c":
                 axis.set_xlabel(label)
     handles = [Line2D([], [], color=c, marker=".", label=t) for c, t in zip(colours, labels)]
     handles.append(Line2D([], [], color=INK, linestyle=DASHED, label="by perturbation"))
-    note = "first letter: force (moment), second: motion; the force is minus these. Amplitudes: 0 to peak, in clearances; of slopes over twice the length"
+    note = "K = \u2212dF/dx, C = \u2212dF/d(dx/dt); first index: force (moment), second: motion (x', y': slopes). Amplitudes: 0-peak, in clearances; slopes: the same length over twice the bearing's"
     return save(figure, study, f"enforced-{what}-{of}", note, handles)
 
 

@@ -190,10 +190,12 @@ def draw_rigid(results, deck, rotor):
     if number(rotor.get("load")):
         axis.annotate("", (0, -1.25), (0, -0.7), arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.2})
         axis.annotate(f"load {quantity(rotor.get('load'))}", (0.1, -1.1), ha="left", va="center", fontsize=9)
-    places = np.linspace(-1.6, 1.6, len(bearings)) if len(bearings) > 1 else [1.6] * len(bearings)
+    left = len(bearings) // 2  # beside the mass, not below it
+    places = [*np.linspace(-1.65, -0.9, left), *np.linspace(1.65, 0.9, len(bearings) - left)[::-1]]
+    wide = min(0.5, 0.65 / max(1, len(bearings) - left - 1))
     for at, name in zip(places, bearings):
         for side in (1, -1):
-            axis.add_artist(Rectangle((at - 0.25, 0.16 if side > 0 else -0.3), 0.5, 0.14, facecolor=COLOURS[1], edgecolor="none"))
+            axis.add_artist(Rectangle((at - wide / 2, 0.16 if side > 0 else -0.3), wide, 0.14, facecolor=COLOURS[1], edgecolor="none"))
         axis.plot(at, -0.55, marker="^", color=COLOURS[1], markersize=10)
         axis.annotate(name, (at, -0.7), ha="center", va="top", fontsize=9)
     axis.plot([-2.2, 2.2], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)))

@@ -164,7 +164,7 @@ def draw_locus(study):
     x, y = (branch.column(k) * 1e6 for k in "xy")
     # A path that stays where it is would be one dot.
     clearance = study.get("bearings/clearance", np.zeros(1))
-    if max(np.ptp(x, axis=0).max(), np.ptp(y, axis=0).max()) <= 1e-4 * max(np.abs(x).max(), np.abs(y).max(), 1e6 * np.max(clearance)):
+    if max(np.ptp(x, axis=0).max(), np.ptp(y, axis=0).max()) <= 0.02 * max(np.abs(x).max(), np.abs(y).max(), 1e6 * np.max(clearance)):
         return []
     names = study.bearings(x.shape[1])
     figure, axes = places_in_rows(len(names))

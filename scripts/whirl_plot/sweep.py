@@ -1,4 +1,6 @@
 """Sweeps: what was asked of all variants on one picture, and values over what changes."""
+import re
+
 import numpy as np
 
 from .bifurcation import Followed
@@ -253,13 +255,19 @@ def draw_coefficients(study):
             for colour, values in zip(COLOURS, entries.values()):
                 known = np.isfinite(values)
                 axis.plot(*smooth(at[known], values[known]), color=colour, linewidth=1.4)
-            axis.set_title(bearing)
+            axis.set_title(place_of(bearing))
             axis.set_xlabel(axis_of(study)[0])
             axis.set_ylabel(f"{words} [{unit}]")
             axis.axhline(0, color=INK, linewidth=0.6)
         handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(COLOURS, found[0][2])]
         files += save(figure, study, words, "minus the derivatives of the film's force on the journal", handles)
     return files
+
+
+def place_of(name):
+    """`coefficients.speed.2000.ratio.0.5` as `coefficients: speed 2000, \u03c9/\u03a9 = 0.5`; a bearing as it is."""
+    found = re.fullmatch(r"(.*)\.speed\.([0-9.]+)\.ratio\.([0-9.]+)", name)
+    return f"{found[1]}: speed {found[2]}, \u03c9/\u03a9 = {found[3]}" if found else name
 
 
 def smooth(at, values):
