@@ -30,8 +30,16 @@ def pyplot():
 
 
 def keep_ticks():
-    """A spine that is asked for its place for the first time throws away the ticks of its axis, which have just been made."""
+    """A spine that is asked for its place for the first time throws away the ticks of its axis, which have just been made; and an axis makes
+    a minor tick to clip it, though it has no minor ticks."""
+    from matplotlib.artist import Artist
+    from matplotlib.axis import Axis
     from matplotlib.spines import Spine
+
+    def clip(axis, path, transform=None):
+        Artist.set_clip_path(axis, path, transform)
+        for tick in (*vars(axis).get("majorTicks", ()), *vars(axis).get("minorTicks", ())):
+            tick.set_clip_path(path, transform)
 
     def at_the_axes(spine):
         if spine._position is None:
@@ -39,7 +47,7 @@ def keep_ticks():
             spine.set_position(("outward", 0.0))
             spine.axis = axis
 
-    Spine._ensure_position_is_set = at_the_axes
+    Spine._ensure_position_is_set, Axis.set_clip_path = at_the_axes, clip
 
 
 def contours(axis, x, y, values, levels, colour, alpha):

@@ -41,18 +41,20 @@ def box_of(axis, place, sides, steps, words):
     return corners
 
 
-def covered(axis, corners, steps, taken):
+def dense_points(axis):
+    """Points along all lines of the axes, close to each other, in fractions of the axes."""
+    low, high = np.transpose([axis.get_xlim(), axis.get_ylim()])
+    curves = [(line.get_xydata() - low) / (high - low) for line in axis.get_lines()]
+    share = np.linspace(0, 1, 20)[:, None, None]
+    return np.concatenate([np.zeros((0, 2)), *((c[:-1] + share * (c[1:] - c[:-1])).reshape(-1, 2) if len(c) > 1 else c for c in curves)])
+
+
+def covered(dense, corners, steps, taken):
     """How much lies under a box: curves by their length, other labels and the world outside the axes a great deal, the way there
     a little."""
-    low, span = (np.array([limits[0] for limits in (axis.get_xlim(), axis.get_ylim())]),
-                 np.array([np.ptp(limits) for limits in (axis.get_xlim(), axis.get_ylim())]))
     hits = 1e6 * float(np.any(corners[0] < 0) or np.any(corners[1] > 1)) + 1e-3 * steps
     hits += 1e3 * sum(bool(np.all(corners[0] < other[1]) and np.all(other[0] < corners[1])) for other in taken)
-    for line in axis.get_lines():
-        curve = (line.get_xydata() - low) / span
-        dense = np.concatenate([np.linspace(a, b, 20) for a, b in zip(curve[:-1], curve[1:])] or [curve])
-        hits += np.count_nonzero(np.all((dense > corners[0]) & (dense < corners[1]), axis=1))
-    return hits
+    return hits + np.count_nonzero(np.all((dense > corners[0]) & (dense < corners[1]), axis=1))
 
 
 def label(axis, points):
@@ -66,10 +68,10 @@ def label(axis, points):
             groups.append((x, y, [word]))
         elif word not in near[0][2]:
             near[0][2].append(word)
-    taken = []
+    taken, dense = [], dense_points(axis)
     for x, y, words in groups:
         ways = [((sx, sy), n) for n in (1, 4, 8) for sx, sy in ((1, -1), (1, 1), (-1, 1), (-1, -1), (1, 0), (-1, 0))]
-        sides, steps = min(ways, key=lambda w: covered(axis, box_of(axis, (x, y), *w, words), w[1], taken))
+        sides, steps = min(ways, key=lambda w: covered(dense, box_of(axis, (x, y), *w, words), w[1], taken))
         taken.append(box_of(axis, (x, y), sides, steps, words))
         axis.annotate(",\n".join(words), (x, y), textcoords="offset points", xytext=STEP * sides * steps, fontsize=8,
                       color=INK, ha="left" if sides[0] > 0 else "right", va=("top", "center", "bottom")[sides[1] + 1],
@@ -114,20 +116,22 @@ def draw_curve(axis, study):
     return any(not border for *_, border in pieces(study))
 
 
-def crossings(study, level):
-    """Where the borders of a curve cross a line of constant second parameter: (first parameter, unstable above it)."""
+def crossings(study):
+    """A function of the second parameter: where the borders of a curve cross its line, (first parameter, unstable above it)."""
     x, y, border = borders(study)
     side, start = study.attribute("stable_side", ""), int(study.attribute("start", 0) or 0)
     if side not in ("above", "below") or len(x) < 2:
-        return []
+        return lambda level: []
     steps = np.sign(np.diff(y))
     # The unstable side stays left or right of the curve as one goes along it.
     way = steps[min(start, len(steps) - 1)] or steps[max(start - 1, 0)]
-    found = []
-    for k in np.flatnonzero(border & (steps != 0) & (np.minimum(y[:-1], y[1:]) <= level) & (level < np.maximum(y[:-1], y[1:]))):
-        where = x[k] + (x[k + 1] - x[k]) * (level - y[k]) / (y[k + 1] - y[k])
-        found.append((where, (side == "below") == (steps[k] == way)))
-    return found
+    low, high, usable = np.minimum(y[:-1], y[1:]), np.maximum(y[:-1], y[1:]), border & (steps != 0)
+
+    def at(level):
+        here = np.flatnonzero(usable & (low <= level) & (level < high))
+        return [(x[k] + (x[k + 1] - x[k]) * (level - y[k]) / (y[k + 1] - y[k]), (side == "below") == (steps[k] == way)) for k in here]
+
+    return at
 
 
 def regions(axis, studies):
@@ -141,9 +145,9 @@ def regions(axis, studies):
     free = np.ones((len(y), len(x)), bool)  # every motion is known to be stable there
     names = []
     for of, curves in groups.items():
-        mask = np.zeros((len(y), len(x)), bool)
+        mask, at = np.zeros((len(y), len(x)), bool), [crossings(s) for s in curves]
         for row, level in enumerate(y):
-            found = sorted(c for s in curves for c in crossings(s, level))
+            found = sorted(c for of_curve in at for c in of_curve(level))
             if not found:
                 free[row] = False
                 continue

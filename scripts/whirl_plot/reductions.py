@@ -33,10 +33,11 @@ def draw_errors(study):
         for column, method in enumerate(methods):
             axis = axes[row, column]
             for k in range(errors.shape[2]):
-                axis.semilogy(freedoms, np.maximum(errors[column, :, k], 1e-16), "-o", markersize=2.2, linewidth=0.9, color=plt.cm.viridis(k / max(1, errors.shape[2] - 1)))
-            axis.semilogy(freedoms, errors[column].max(axis=1), color=INK, linewidth=1.8)
+                axis.plot(freedoms, np.maximum(errors[column, :, k], 1e-16), "-o", markersize=2.2, linewidth=0.9, color=plt.cm.viridis(k / max(1, errors.shape[2] - 1)))
+            axis.plot(freedoms, errors[column].max(axis=1), color=INK, linewidth=1.8)
             if row == 0:
                 axis.set_title(words(method), fontsize=9)
+        axes[row, 0].set_yscale("log")  # the axes of a row share it
         axes[row, 0].set_ylabel(label)
     for axis in axes[-1]:
         axis.set_xlabel("freedoms")

@@ -76,8 +76,10 @@ def words_of(subject):
     return subject.name + (f", unbalance {unbalance}" if unbalance else "")
 
 
-def legend(rows):
-    return [Line2D([], [], color=c, label=v) for v, c, _ in rows]
+def legend(rows, most=16):
+    """Of many variants some, evenly: their colours are those of a scale."""
+    shown = rows if len(rows) <= most else [rows[k] for k in np.linspace(0, len(rows) - 1, most).round().astype(int)]
+    return [Line2D([], [], color=c, label=v) for v, c, _ in shown]
 
 
 def plain(text):
@@ -208,10 +210,11 @@ def draw_films(study):
     """Pressure of each bearing's first pad in its middle, and along the bearing where it is highest."""
     files = []
     for name, rows in each(study, "static", "films"):
-        for bearing in rows[0][2].fields:
+        films = [s.fields for *_, s in rows]
+        for bearing in films[0]:
             figure, axes, _ = grid_of(2, width=4.6, height=3.4, columns=2)
-            for _, colour, s in rows:
-                pad = s.fields[bearing]["pad1"]
+            for (_, colour, _), fields in zip(rows, films):
+                pad = fields[bearing]["pad1"]
                 theta, z, p = np.degrees(pad["theta"]), pad["z"] * 1e3, pad["pressure"] / 1e6
                 middle, top = int(np.argmin(np.abs(z))), int(np.argmax(p.max(axis=1)))
                 mark = "o" if len(theta) <= 41 else None

@@ -95,7 +95,6 @@ def rows_of(axis):
             ticks[k].update_position(places[k])
             ticks[k].set_label1(texts[k])
             ticks[k].set_label2(texts[k])
-            ticks[k].texts = texts[k]
             found.append(ticks[k])
     return found
 
@@ -110,7 +109,7 @@ def settled():
 
     def again(axes, renderer):
         plain = axes.get_aspect() == "auto" and axes.get_axes_locator() is None and axes.name == "rectilinear"
-        told = [(axis.major.formatter.get_offset(), [row.texts for row in axis._update_ticks()]) for axis in (axes.xaxis, axes.yaxis)] if plain else None
+        told = [(axis.major.formatter.get_offset(), [tick.texts if isinstance(tick, Row) else tick.label1.get_text() for tick in axis._update_ticks()]) for axis in (axes.xaxis, axes.yaxis)] if plain else None
         if plain and axes in known and told == known[axes][0]:  # what stands around the axes has not changed
             place = axes.get_position(original=True)
             return place, Bbox(place.get_points() + known[axes][1])

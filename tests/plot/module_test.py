@@ -3,6 +3,7 @@
 import contextlib
 import os
 import pathlib
+import re
 import sys
 import tempfile
 import types
@@ -15,7 +16,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
 
 import whirl  # noqa: E402
-from whirl_plot import bore, curves, locus, multipliers, response, style, tables, units  # noqa: E402
+from whirl_plot import bore, curves, locus, multipliers, response, style, tables, ticks, units  # noqa: E402
 
 
 def refuses(what, *words):
@@ -114,8 +115,8 @@ def palettes():
 
 
 def ticks_once():
-    """Pictures whose ticks are remembered are those of matplotlib, byte by byte, whichever format comes first, and are asked for their
-    ticks once for each of two layouts and for each format."""
+    """Pictures whose ticks are drawn together are those of matplotlib, byte by byte, whichever format comes first, with the same texts in a
+    drawing, and are asked for their ticks once for each of two layouts and for each format."""
     def pictures(folder):
         figure, axes = style.plt.subplots(2, 2, sharex="col")
         axes[0, 0].plot([0, 3], [1e9 + 1, 1e9 + 4])  # with an offset above the title
@@ -131,20 +132,22 @@ def ticks_once():
         return len(figure.axes), {file.name: file.read_bytes() for file in files}
 
     asked = []
-    real, kept = Axis._update_ticks, style.remembered
-    Axis._update_ticks = lambda axis: asked.append(axis) or real(axis)
+    real, kept, rows = Axis._update_ticks, style.together, ticks.rows_of
+    Axis._update_ticks, ticks.rows_of = (lambda axis, real=real: asked.append(axis) or real(axis)), (lambda axis: asked.append(axis) or rows(axis))
     style.use_style(("png", "svg"))
     try:
         with tempfile.TemporaryDirectory() as name:
             count, quick = pictures(pathlib.Path(name))
             few = len(asked)
-            style.remembered = lambda: contextlib.nullcontext(lambda: None)
+            style.together = lambda: contextlib.nullcontext(lambda: None)
             style.use_style(("svg", "png"))
             _, slow = pictures(pathlib.Path(name))
     finally:
-        Axis._update_ticks, style.remembered = real, kept
+        Axis._update_ticks, style.together, ticks.rows_of = real, kept, rows
         style.use_style()
-    assert quick == slow and few <= 4 * 2 * count < len(asked) / 2, (few, len(asked))
+    texts = [sorted(re.findall(r">([^<>]+)</text>", made["ticks.svg"].decode())) for made in (quick, slow)]
+    assert quick["ticks.png"] == slow["ticks.png"] and texts[0] == texts[1] and len(texts[0]) > 20, texts
+    assert few <= 4 * 2 * count < len(asked) / 2, (few, len(asked))
 
 
 def smooth_curves():
@@ -196,9 +199,9 @@ class Curve:
 
 def borders_of_curves():
     for side in ("below", "above"):
-        (where, above), = locus.crossings(Curve(side), 1.03)
+        (where, above), = locus.crossings(Curve(side))(1.03)
         assert abs(where - 2.03) < 1e-9 and above == (side == "below"), (side, where, above)
-        assert locus.crossings(Curve(side), 1.8) == [], "where something else is unstable already there is no border"
+        assert locus.crossings(Curve(side))(1.8) == [], "where something else is unstable already there is no border"
 
 
 class Bearings:
