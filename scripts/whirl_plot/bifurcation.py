@@ -243,7 +243,7 @@ def draw_equilibria(study):
         finish(axis, "least stable eigenvalue", "real part [1/s]", parameter_label(study))
         least_span(axis, np.abs(growth).max())
         over_speed(axis, study)
-    directions = [Line2D([], [], color=Y, label="y, vertical"), Line2D([], [], color=X, label="x, horizontal")] if shown else []
+    directions = [Line2D([], [], color=c, label=w if study.in_space else w[0]) for c, w in ((Y, "y, vertical"), (X, "x, horizontal"))] if shown else []
     behind = growth is not None and sum(kind in ("hopf", "fold") for kind in branch.kinds) > 1
     return save(figure, study, "equilibria", (study.shown if shown else "the journals stay at their centres") + ("; marks at zero: an eigenvalue crosses, perhaps not the least stable one" if behind else ""),
                 legend([branch], directions))

@@ -1,6 +1,8 @@
 """A motion in time on one page: orbit in the clearance, Poincare points, spectrum, convergence of the Lyapunov exponents."""
 import numpy as np
 
+from whirl.answer import in_print
+
 from .bore import draw_clearance
 from .canvas import plt
 from .orbits import finish, square, turn_arrow
@@ -40,10 +42,10 @@ def draw_points(axis, px, py, unit):
     finish(axis, unit=unit)
 
 
-def draw_spectrum(axis, order, x, y, unit, top=6.0):
+def draw_spectrum(axis, order, x, y, unit, in_space, top=6.0):
     shown = order <= top
     floor = max(1e-9, 1e-8 * max(x[shown].max(), y[shown].max()))
-    for values, colour, label in ((y, Y, "y, vertical"), (x, X, "x, horizontal")):
+    for values, colour, label in ((y, Y, f"y{', vertical' * in_space}"), (x, X, f"x{', horizontal' * in_space}")):
         axis.semilogy(order[shown], np.maximum(values[shown], floor), color=colour, linewidth=0.8, label=label)
     axis.set_xlim(0, top)
     axis.set_xlabel("frequency / running speed")
@@ -95,7 +97,7 @@ def draw(study):
         row[0].set_title("orbit" if len(rows) == 1 else f"orbit, {names[b]}")
         draw_points(row[1], px[:, b], py[:, b], unit)
         row[1].set_title(where)
-        draw_spectrum(row[2], order, sx[:, b], sy[:, b], unit)
+        draw_spectrum(row[2], order, sx[:, b], sy[:, b], unit, study.in_space)
         row[2].set_title("spectrum")
         if exponents and b == rows[0]:
             draw_exponents(row[3], study.get("exponents/running"), study.attribute("speed"),
@@ -105,7 +107,7 @@ def draw(study):
             row[3].set_visible(False)
     turns = int(round(x.shape[0] / study.attribute("samples", 1)))
     mark = "shaft angle 0" if cut == "poincare" else str(study.group["section"].attrs["plane"])
-    return save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, black: {mark}; {ROTATION}" + also(later))
+    return save(figure, study, "motion", f"{in_print(study.attribute('evidence', ''))}; last {turns} revolutions, black: {mark}" + f"; {ROTATION}" * study.in_space + also(later))
 
 
 def same(one, other):

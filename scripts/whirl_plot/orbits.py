@@ -122,6 +122,7 @@ def draw_harmonics(study, highest=20):
     if not orbits or period is None or study.attribute("unbalance", "") or any(o.point is None for o in orbits):
         return []
     scale, unit = study.micro
+    word = "whirl" if study.in_space else "oscillation"
     along = along_branch(study, orbits)
     pick = np.unique([int(np.argmin(np.abs(along - s))) for s in np.linspace(along[0], along[-1], 4)[1:]])
     stable = stability(study, [orbits[k] for k in pick])
@@ -138,7 +139,7 @@ def draw_harmonics(study, highest=20):
         top = max(top, half_axis.max())
         stems.append((order + (place - (len(pick) - 1) / 2) * width, half_axis, colour, steady))
         handles.append(Line2D([], [], color=colour, marker="o", markersize=3, linewidth=1.2, linestyle=DASHED if steady is False else "-",
-                              label=f"{o.parameter:.5g}{given}, whirl {hertz:.4g} Hz" + (", unstable" if steady is False else "")))
+                              label=f"{o.parameter:.5g}{given}, {word} {hertz:.4g} Hz" + (", unstable" if steady is False else "")))
     low = 1e-5 * top
     last = max(int(np.flatnonzero((half_axis > low).any(axis=1)).max(initial=0)) + 1 for _, half_axis, _, _ in stems)
     for at, half_axis, colour, steady in stems:
@@ -151,10 +152,10 @@ def draw_harmonics(study, highest=20):
         axis.set_ylim(low, 2 * top)
         axis.set_xlim(0.5, last + 0.5)
         ticks_at(axis.xaxis, np.arange(1, last + 1, -(-last // 8)))
-        axis.set_xlabel("harmonic of the whirl")
+        axis.set_xlabel(f"harmonic of the {word}")
         axis.set_title(name)
     axes[0, 0].set_ylabel(f"larger half-axis [{unit}]")
-    return save(figure, study, "harmonics", f"harmonics of the whirl of each cycle, the larger half-axis of the ellipse of each (0-peak); {study.shown}", handles, 3)
+    return save(figure, study, "harmonics", f"harmonics of the {word} of each cycle, the larger half-axis of the ellipse of each (0-peak); {study.shown}", handles, 3)
 
 
 def draw_locus(study):

@@ -30,7 +30,7 @@ img{max-width:100%;border:1px solid var(--line);border-radius:4px} details{margi
 body{counter-reset:figures tables} figcaption::before{counter-increment:figures;content:"Figure " counter(figures) ". ";font-weight:600}
 caption span::before{counter-increment:tables;content:"Table " counter(tables) ". "}
 @media print{nav{display:none} body{max-width:none;padding:0;font-size:10pt} figure,table,tr{break-inside:avoid} h2{break-after:avoid} .scroll{overflow:visible}}
-@media screen and (max-width:700px){body{padding:.8em;overflow-wrap:break-word} caption span{white-space:normal;max-width:calc(100vw - 2.5em)} img{min-width:600px} td.name{white-space:normal} th,td{padding-right:.8em}}
+@media screen and (max-width:700px){body{padding:.8em;overflow-wrap:break-word} caption span{white-space:normal;max-width:calc(100vw - 2.5em)} img{min-width:600px} td.name{white-space:normal} td.long{min-width:9em} th,td{padding-right:.8em}}
 .bad{color:var(--bad);font-weight:600} .warn{color:var(--bad);margin:.2em 0;padding-left:1.2em} .scroll{overflow-x:auto} pre{background:#f3f6f9;padding:.8em;overflow-x:auto;font-size:.85em}
 """
 
@@ -50,7 +50,7 @@ CAPTIONS = {
     "trends": "Where bifurcations lie over what the sweep changes.", "impedance": "Resistance to a squeeze, over the journal's place.",
     "map-locus": "Where the journal rests under a load.", "map-stiffness": "Stiffness over the load.", "map-damping": "Damping over the load.",
     "map-stability": "Where a rigid rotor loses stability.", "map-pressure": "Pressure and thickness around the bearing.",
-    "history": "The motion over time.", "harmonics": "Harmonics of the whirl of each cycle.", "critical-speeds": "Undamped critical speeds over the stiffness of the supports.",
+    "history": "The motion over time.", "harmonics": "Harmonics of the self-excited vibration.", "critical-speeds": "Undamped critical speeds over the stiffness of the supports.",
     "convergence": "Natural frequencies over the number of elements.", "shifts": "Frequencies of other elements against those of the deck.",
     "conditions": "Condition of the eigenvalues.", "reduction-errors": "Errors of reduced shafts.", "reduction-orbits": "Orbits of whole and reduced shafts.",
     "reduction-maps": "Entries of the reduced matrices.", "whirl-map": "Sense of whirl of each mode along the shaft, over the speed.",

@@ -3,7 +3,7 @@ import numpy as np
 
 from .canvas import plt
 from .style import GREY, INK, parameter_label, save
-from .thd_film import LABEL
+from .thd_film import LABEL, ZERO
 
 
 def draw_iterations(study):
@@ -36,7 +36,7 @@ def draw_meshes(study):
     shown = [("least and largest", [("minimum", "#3b6fb6"), ("maximum", "#c0392b")]), ("mean by volume", [("mean", INK)])]
     for axis, (title, curves) in zip(axes, shown):
         for name, colour in curves:
-            axis.semilogx(cells, study.get(f"meshes/temperature.{name}"), "-o", markersize=4, color=colour, label=name)
+            axis.semilogx(cells, study.get(f"meshes/temperature.{name}") - ZERO, "-o", markersize=4, color=colour, label=name)
         axis.set_title(title)
         axis.set_ylabel(LABEL)
         axis.ticklabel_format(axis="y", useOffset=False)

@@ -4,6 +4,7 @@ import numpy as np
 
 from .canvas import plt
 from .style import COLOURS, GREY, INK, save, ticks_at
+from .thd_film import LABEL, ZERO
 from .units import person
 
 SAME = {"load": "load", "power_loss": "power loss", "mass_flow": "flow"}
@@ -17,16 +18,17 @@ def draw_effective(study):
     figure, (left, right) = plt.subplots(1, 2, figsize=(10.5, 4.2), gridspec_kw={"width_ratios": (2, 3)})
     places = np.arange(len(same))
     labels = [f"same {SAME[name]}" for name in same]
-    left.plot(places, study.get("effective/temperature"), "D", color=INK, markersize=7)
-    for k, t in enumerate(study.get("effective/temperature")):
+    celsius = study.get("effective/temperature") - ZERO
+    left.plot(places, celsius, "D", color=INK, markersize=7)
+    for k, t in enumerate(celsius):
         left.annotate(f"{t:.2f}", (k, t), textcoords="offset points", xytext=(9, -3), fontsize=8.5)
     if "temperature.mean" in study.values:
-        mean = study.values["temperature.mean"].value
+        mean = study.values["temperature.mean"].value - ZERO
         left.axhline(mean, color=GREY, linewidth=0.9)
         left.annotate("mean of the film with heat", (-0.45, mean), textcoords="offset points", xytext=(0, 4), fontsize=8.5, color=GREY)
     ticks_at(left.xaxis, places, labels)
     left.set_xlim(-0.5, len(same) - 0.3)
-    left.set_ylabel("temperature of the film [K]")
+    left.set_ylabel("temperature of the film [\u00b0C]")
     left.ticklabel_format(axis="y", useOffset=False)
     width = 0.25
     for n, (name, label) in enumerate(SAME.items()):
@@ -55,7 +57,7 @@ def draw_properties(study):
     """Clearance and properties of the fluid over the temperature, over their values at the least one."""
     if not study.has("properties/temperature"):
         return []
-    t = np.asarray(study.get("properties/temperature"))
+    t = np.asarray(study.get("properties/temperature")) - ZERO
     order = np.argsort(t)
     figure, axis = plt.subplots(figsize=(10.5, 5.0))
     for n, (name, label) in enumerate(PROPERTIES.items()):
@@ -65,7 +67,7 @@ def draw_properties(study):
         axis.plot(t[order], values / values[0], "-o", markersize=3.5, linewidth=2.4 if name == "clearance" else 1.4,
                   color=INK if name == "clearance" else COLOURS[n], label=f"{label}, {person(values[0], unit_of(study, name), 4)}")
     axis.axhline(1, color=GREY, linewidth=0.7)
-    axis.set_xlabel("temperature [K]")
-    axis.set_ylabel(f"over the value at {t.min():.5g} K")
-    return save(figure, study, "thd-properties", f"legend: value at {t.min():.5g} K; bush, shaft and fluid have one temperature; density at ambient pressure",
+    axis.set_xlabel(LABEL)
+    axis.set_ylabel(f"over the value at {t.min():.5g} \u00b0C")
+    return save(figure, study, "thd-properties", f"legend: value at {t.min():.5g} \u00b0C; bush, shaft and fluid have one temperature; density at ambient pressure",
                 handles=axis.get_legend_handles_labels()[0], columns=3)

@@ -5,7 +5,7 @@ from matplotlib.patches import FancyArrowPatch
 
 from .canvas import contours, plt
 from .style import DASHED, INK, LIGHT, key, save
-from .thd_film import HEAT, LABEL, RUPTURED, Film, closes, ring, stretches
+from .thd_film import HEAT, LABEL, RUPTURED, ZERO, Film, closes, ring, stretches
 
 
 def draw_profiles(study):
@@ -32,6 +32,9 @@ def parts(study):
     film = Film(study) if study.has("film/theta", "film/z", "film/temperature", "film/thickness", "film/pressure") else None
     bush = {k: study.get(f"bush/{k}") for k in ("temperature", "theta", "z", "r")} if study.has("bush/temperature") else None
     journal = {k: study.get(f"journal/{k}") for k in ("temperature", "z", "r")} if study.has("journal/temperature") else None
+    for part in (bush, journal):
+        if part:
+            part["temperature"] = part["temperature"] - ZERO
     if journal and study.has("journal/theta"):
         journal["theta"] = study.get("journal/theta")
     if film and bush and "bush" in film.walls and bush["temperature"].shape[:2] == film.walls["bush"].shape:

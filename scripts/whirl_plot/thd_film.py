@@ -4,7 +4,8 @@ import numpy as np
 from .style import runs
 
 HEAT = "inferno"
-LABEL = "temperature [K]"
+LABEL = "temperature [\u00b0C]"  # as on the screen
+ZERO = 273.15  # K
 FULL, RUPTURED = 0, 1  # regions of a film; those of grooves follow
 
 
@@ -102,17 +103,17 @@ class Unwrapped:
 
 
 class Film(Unwrapped):
-    """Fields at the nodes, [along, around], and the temperature from the bush (zeta 0) to the journal (zeta 1)."""
+    """Fields at the nodes, [along, around], and the temperature [degC] from the bush (zeta 0) to the journal (zeta 1)."""
 
     def __init__(self, study):
         self.thickness, self.pressure = study.get("film/thickness"), study.get("film/pressure")
         self.radius = float(np.ravel(study.get("film/radius", 0))[0])
         self.speed = study.get("film/speed")
         self.speed = None if self.speed is None else float(np.ravel(self.speed)[0])
-        self.temperature = study.get("film/temperature")
+        self.temperature = study.get("film/temperature") - ZERO
         layers = self.temperature.shape[2]
         self.zeta = (np.arange(layers) + 0.5) / layers
-        self.walls = {name: study.get(f"film/{name}_wall") for name in ("bush", "journal") if study.has(f"film/{name}_wall")}
+        self.walls = {name: study.get(f"film/{name}_wall") - ZERO for name in ("bush", "journal") if study.has(f"film/{name}_wall")}
         for name, at in (("bush", 0), ("journal", 1)):
             if name in self.walls:
                 side = 0 if at == 0 else len(self.zeta)
@@ -131,7 +132,7 @@ class Film(Unwrapped):
 
     @property
     def middle(self):
-        """K [along, around] between the walls."""
+        """degC [along, around] between the walls."""
         return np.array([[np.interp(0.5, self.zeta, column) for column in row] for row in self.temperature])
 
     @property

@@ -521,7 +521,7 @@ def ruptured(folder):
     corners = np.concatenate(outline.get_segments())
     assert np.allclose((corners.min(axis=0), corners.max(axis=0)), ((101.25, -12.1875), (138.75, 12.1875))), "cells, not nodes"
     mesh = field_of(warm)
-    drawn = np.asarray(mesh.get_array()).ravel()
+    drawn = np.asarray(mesh.get_array()).ravel() + thd_film.ZERO  # K
     assert set(np.round(drawn[drawn < 334])) == {310, 320} and drawn[drawn > 321].min() >= 335 - 1e-9, "nothing between regions"
     contours = [p for c in warm.collections if c not in (*hatched, outline, mesh) and c.get_label() != "_halo" for p in c.get_paths() if len(p.vertices)]
     assert contours
