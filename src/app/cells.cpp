@@ -5,19 +5,41 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
 
 namespace whirl::app {
 
-std::size_t widest_line() {
-  static const std::size_t columns = [] {
-    constexpr std::size_t narrowest = 60, without_terminal = 100, widest = 200;
+namespace {
+
+// The columns of the terminal. mpirun gives its ranks a terminal without a size: scripts/run then tells it by COLUMNS.
+// None if the text goes to a file or to another program.
+std::optional<std::size_t> terminal_columns() {
+  static const std::optional<std::size_t> columns = []() -> std::optional<std::size_t> {
+    constexpr std::size_t narrowest = 60, widest = 200;
     winsize size{};
-    if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
-      return without_terminal;
-    return std::clamp<std::size_t>(size.ws_col, narrowest, widest);
+    std::size_t given = 0;
+    if (isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) given = size.ws_col;
+    if (const char* text = given == 0 ? std::getenv("COLUMNS") : nullptr)
+      std::from_chars(text, text + std::strlen(text), given);
+    if (given == 0) return std::nullopt;
+    return std::clamp(given, narrowest, widest);
   }();
   return columns;
+}
+
+}  // namespace
+
+std::size_t widest_line() {
+  constexpr std::size_t without_terminal = 100;
+  return terminal_columns().value_or(without_terminal);
+}
+
+std::string paragraph(const std::string& text, std::size_t indent) {
+  return terminal_columns() ? in_lines(text, indent) : fmt::format("{:{}}{}\n", "", indent, text);
 }
 
 std::string in_lines(const std::string& text, std::size_t indent) {

@@ -7,12 +7,15 @@
 
 namespace whirl::app {
 
-/// Widest line of a table: that of the terminal, 100 where there is none. What is wider goes on below, with the first
-/// column again.
+/// Widest line of a table: that of the terminal or of COLUMNS, 100 where neither is known. What is wider goes on below,
+/// with the first column again.
 [[nodiscard]] std::size_t widest_line();
 
 /// `text` in lines of at most widest_line after `indent` spaces, more after the first one.
 [[nodiscard]] std::string in_lines(const std::string& text, std::size_t indent);
+
+/// `text` as in_lines on a terminal, on one line of any length where other programs read it.
+[[nodiscard]] std::string paragraph(const std::string& text, std::size_t indent);
 
 /// Rows of cells, right-aligned below their heads, the first column left-aligned. Columns without a number are left
 /// out. A table wider than widest_line goes on below with the first column again. A remark stands below its row, in the

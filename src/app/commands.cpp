@@ -48,7 +48,7 @@ std::string warnings_text(const study::Deck& deck) {
   const std::vector<std::string> warnings = study::warnings(deck);
   constexpr std::size_t most = 20;
   std::string text;
-  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += fmt::format("  warning: {}\n", warnings[i]);
+  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += paragraph("warning: " + warnings[i], 2);
   if (warnings.size() > most) text += fmt::format("  and {} more warnings\n", warnings.size() - most);
   return text;
 }
@@ -123,9 +123,10 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, const Print& print) {
     text += service_text(all.service) + answers;
     std::size_t warnings = all.warnings.size();
     for (const io::StudySummary& s : all.studies) warnings += s.warnings.size();
-    closing = fmt::format("results in {}{}; {} {} writes tables and pictures on one page\n", directory,
-                          warnings == 0 ? "" : " with " + count(warnings, "warning", "warnings"), report_command(),
-                          directory);
+    closing = paragraph(fmt::format("results in {}{}; {} {} writes tables and pictures on one page", directory,
+                                    warnings == 0 ? "" : " with " + count(warnings, "warning", "warnings"),
+                                    report_command(), directory),
+                        0);
   });
   for (const auto& o : core::Session::options_in_force())
     if (o.source != "command line")

@@ -60,10 +60,9 @@ std::string brief_text(const io::Brief& brief) {
 std::string headline_text(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
-  if (!s.layout.empty()) text += fmt::format("  {}\n", s.layout);
-  if (!s.stability.empty() && !s.brief.tells_stability)
-    text += fmt::format("  {}{}\n", s.stability, in_words(s.ranges));
-  for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
+  if (!s.layout.empty()) text += paragraph(s.layout, 2);
+  if (!s.stability.empty() && !s.brief.tells_stability) text += paragraph(s.stability + in_words(s.ranges), 2);
+  for (const std::string& w : s.warnings) text += paragraph("note: " + w, 2);
   return text;
 }
 
@@ -82,7 +81,7 @@ std::string service_text(const io::Service& service) {
     if (!f.place.empty()) words.push_back("at " + f.place);
     std::string line = fmt::format("{}", fmt::join(words, " "));
     if (!f.mark.empty()) line += (line.empty() ? "" : ", ") + f.mark;
-    text += fmt::format("  {}: {}{}\n", f.what, line, f.study.empty() ? "" : " (" + f.study + ")");
+    text += paragraph(fmt::format("{}: {}{}", f.what, line, f.study.empty() ? "" : " (" + f.study + ")"), 2);
   }
   return text;
 }

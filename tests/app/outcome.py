@@ -6,6 +6,7 @@ outcome.py PROGRAM SOURCE
 """
 import json
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -145,6 +146,14 @@ for name, words, said in (("marks", marks, "without limit(.|\n)*as given  .*unda
     again, _ = run(nelson, name, *words, "--resume")
     if not re.search(said, text) or again != text:
         failures.append(f"no '{said}' in\n{text}\nor not in the run that goes on:\n{again}")
+
+# On a terminal of 80 columns all lines fit, long warnings as well. Elsewhere a warning stays one line.
+for columns, deck in (("80", "tutorial/2_unbalance.yaml"), ("80", "merot/frequency_response.yaml"), (None, "merot/frequency_response.yaml")):
+    env = {k: v for k, v in os.environ.items() if k != "COLUMNS"} | ({"COLUMNS": columns} if columns else {})
+    done = subprocess.run([program, "run", source / "inputs" / deck, "-o", work / f"columns_{columns}_{deck[0]}"], capture_output=True, text=True, env=env)
+    widest = max(map(len, done.stdout.splitlines()), default=0)
+    if done.returncode or (widest > 80) != (columns is None):
+        failures.append(f"{deck} with COLUMNS={columns}: exit {done.returncode}, lines of up to {widest} characters")
 
 if not failures:
     shutil.rmtree(work)
