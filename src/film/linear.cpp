@@ -14,9 +14,9 @@
 namespace whirl::film {
 namespace {
 
-using Eight = std::array<double, 8>;  // of stiffness, then of damping: xx xy yx yy
+using EightNumbers = std::array<double, 8>;  // of stiffness, then of damping: xx xy yx yy
 
-Eight entries(const LinearAt& a) {
+EightNumbers entries(const LinearAt& a) {
   return {a.k_xx, a.k_xy, a.k_yx, a.k_yy, a.c_xx, a.c_xy, a.c_yx, a.c_yy};
 }
 
@@ -27,14 +27,14 @@ public:
     std::vector<double> speeds, values;
     for (const LinearAt& row : table) {
       speeds.push_back(row.speed);
-      const Eight of = entries(row);
+      const EightNumbers of = entries(row);
       values.insert(values.end(), of.begin(), of.end());
     }
     curve_ = core::Curve(std::move(speeds), std::move(values), core::Curve::Between::cubic);
   }
 
   struct At {
-    Eight value{}, slope{};
+    EightNumbers value{}, slope{};
   };
   // Of one row at all speeds. Throws core::DomainError beyond several, unless the ends hold.
   [[nodiscard]] At operator()(double speed) const {
