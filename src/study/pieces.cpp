@@ -13,14 +13,14 @@ namespace {
 
 constexpr double least_seconds = 0.5;  // between two files
 
-constexpr int journal_format = 4;
+constexpr int log_format = 4;
 constexpr std::int64_t as_rows = -1;  // the size of a vector that is a dataset of its own
 
 std::string name_of_rows(std::size_t k) {
   return "vector " + std::to_string(k);
 }
 
-void write_journal(io::Group& group, const solve::Journal& journal) {
+void write_log(io::Group& group, const solve::ReplayLog& replay_log) {
   std::vector<double> numbers;
   std::vector<std::int64_t> sizes;
   std::vector<std::string> texts;
@@ -29,12 +29,12 @@ void write_journal(io::Group& group, const solve::Journal& journal) {
     sizes.push_back(static_cast<std::int64_t>(part.size()));
   };
   std::size_t by_rows = 0;
-  for (const auto& e : journal.entries()) {
+  for (const auto& e : replay_log.entries()) {
     add(e.question);
     add(e.answer.numbers);
     sizes.push_back(static_cast<std::int64_t>(e.state));
     sizes.push_back(static_cast<std::int64_t>(e.answer.vectors.size()));
-    for (const solve::Journal::Rows& v : e.answer.vectors) {
+    for (const solve::ReplayLog::Rows& v : e.answer.vectors) {
       if (v.whole) {
         add(v.values);
         continue;
@@ -45,17 +45,17 @@ void write_journal(io::Group& group, const solve::Journal& journal) {
     }
     texts.insert(texts.end(), {e.kind, e.answer.text});
   }
-  group.set("format", journal_format);
+  group.set("format", log_format);
   group.put("numbers", std::move(numbers), "1", "questions and answers, and their vectors unless these stand apart");
   group.put("sizes", std::move(sizes),
             "of each entry: of question and answer, state, number of vectors and their sizes; -1: stands apart");
   group.put("texts", std::move(texts), "kind of question, and what was said");
 }
 
-std::vector<solve::Journal::Entry> read_journal(const io::Group& group) {
-  if (!group.has_attribute("format") || group.integer("format") != journal_format)
+std::vector<solve::ReplayLog::Entry> read_log(const io::Group& group) {
+  if (!group.has_attribute("format") || group.integer("format") != log_format)
     throw core::InputError("the checkpoint is that of another version of the program: begin again with --force");
-  std::vector<solve::Journal::Entry> entries;
+  std::vector<solve::ReplayLog::Entry> entries;
   const auto& sizes = group.integers("sizes");
   const auto& texts = group.strings("texts");
   auto at = group.reals("numbers").begin();
@@ -65,8 +65,8 @@ std::vector<solve::Journal::Entry> read_journal(const io::Group& group) {
   };
   std::size_t by_rows = 0;
   for (std::size_t k = 0, s = 0; s < sizes.size(); ++k) {
-    solve::Journal::Entry e{texts[2 * k], next(sizes[s]), {next(sizes[s + 1]), texts[2 * k + 1]}};
-    e.state = static_cast<solve::Journal::State>(sizes[s + 2]);
+    solve::ReplayLog::Entry e{texts[2 * k], next(sizes[s]), {next(sizes[s + 1]), texts[2 * k + 1]}};
+    e.state = static_cast<solve::ReplayLog::State>(sizes[s + 2]);
     const std::int64_t vectors = sizes[s + 3];
     s += 4;
     for (std::int64_t v = 0; v < vectors; ++v, ++s) {
@@ -88,25 +88,25 @@ std::vector<solve::Journal::Entry> read_journal(const io::Group& group) {
 
 Pieces::Pieces(Findings& findings, bool resume, bool save, int layout)
     : findings_(findings), saves_(save), layout_(layout) {
-  journal_.due = [this] { return due(); };
-  journal_.changed = [this] { save_if_due(); };
+  replay_log_.due = [this] { return due(); };
+  replay_log_.changed = [this] { save_if_due(); };
   if (resume && findings_.has_checkpoint()) {
     const io::Group all = findings_.load_checkpoint();
     state_ = all.group("state");
     pieces_ = all.group("pieces");
     same_layout_ = all.has_attribute("layout") && all.integer("layout") == layout_;
-    if (same_layout_) journal_.begin(read_journal(all.group("journal")));
+    if (same_layout_ && all.has_group("replay_log")) replay_log_.begin(read_log(all.group("replay_log")));
     findings_.add_earlier_seconds(all.real("seconds"));
   }
 }
 
 const io::Group& Pieces::get(const std::string& name, const std::function<void(io::Group&)>& work) {
   if (!known(name)) {
-    const std::size_t place = journal_.place();
+    const std::size_t place = replay_log_.place();
     io::Group made;
     work(made);
     pieces_.child(name) = std::move(made);
-    journal_.forget_from(place);
+    replay_log_.forget_from(place);
     save_if_due();
   }
   return pieces_.group(name);
@@ -152,7 +152,7 @@ bool Pieces::due() const {
 
 bool Pieces::state_due() const {
   const double now = findings_.seconds();
-  return saves_ && !journal_.repeats() &&
+  return saves_ && !replay_log_.repeats() &&
          findings_.agreed(saves_at_once() || (now - last_state_ >= least_seconds && now - last_saved_ >= 20 * cost()));
 }
 
@@ -163,7 +163,7 @@ void Pieces::save_if_due() {
 void Pieces::save(io::Group state) {
   state_ = std::move(state);
   pieces_ = {};
-  journal_.begin();
+  replay_log_.begin();
   write();
   last_state_ = last_saved_;
 }
@@ -173,7 +173,7 @@ void Pieces::write() {
   io::Group all;
   all.child("state") = state_;
   all.child("pieces") = pieces_;
-  write_journal(all.child("journal"), journal_);
+  write_log(all.child("replay_log"), replay_log_);
   all.set("layout", layout_);
   all.set("seconds", findings_.seconds());
   all.set("seconds_between_files", between());

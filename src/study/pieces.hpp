@@ -15,14 +15,14 @@ namespace whirl::study {
 /// Pieces of work that a killed run does not do again: a location's error estimate, the modes at one speed.
 ///
 /// A study asks for each by a name that the same deck gives again in a resumed run, and gets what was kept or what it
-/// computes now. What a piece that is under way has found, and what is found between pieces, is in the journal. The
-/// checkpoint is the state() of the study with pieces and journal since then. It is saved after each of them if half a
-/// second has passed since it was saved last (more if saving takes long), so that a kill costs less than a second and
+/// computes now. What a piece that is under way has found, and what is found between pieces, is in the replay log. The
+/// checkpoint is the state() of the study with pieces and replay log since then. It is saved after each of them if half
+/// a second has passed since it was saved last (more if saving takes long), so that a kill costs less than a second and
 /// the work under way. Every rank holds the same, but for its rows of shared datasets; all members are collective.
 class Pieces {
 public:
   /// With `resume`, takes over the checkpoint of an earlier run if there is one. Without `save` no file is written.
-  /// `layout` tells orders of unknowns apart: a journal in another order is left.
+  /// `layout` tells orders of unknowns apart: a replay log in another order is left.
   Pieces(Findings& findings, bool resume, bool save = true, int layout = 1);
   Pieces(const Pieces&) = delete;
   Pieces& operator=(const Pieces&) = delete;
@@ -33,7 +33,7 @@ public:
   /// Whether the state was saved with unknowns in the order of this run.
   [[nodiscard]] bool same_layout() const { return same_layout_; }
   /// What was found since the state; null if no file is written.
-  [[nodiscard]] solve::Journal* journal() { return saves_ ? &journal_ : nullptr; }
+  [[nodiscard]] solve::ReplayLog* replay_log() { return saves_ ? &replay_log_ : nullptr; }
 
   /// The piece of that name, made by `work` unless it is known.
   const io::Group& get(const std::string& name, const std::function<void(io::Group&)>& work);
@@ -69,7 +69,7 @@ private:
   int layout_;
   bool same_layout_ = true;
   io::Group state_, pieces_;
-  solve::Journal journal_;
+  solve::ReplayLog replay_log_;
   double last_saved_ = -1e9, last_state_ = -1e9;  // at once for the first time
   std::array<double, 2> costs_{};                 // of the last files [s]
 };

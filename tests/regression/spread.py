@@ -98,7 +98,7 @@ def two(more):
            numpy.isnan(real[:, -1]).all() and not numpy.any((real == 0) & (imag == 0)), f"{real[0]}")
     # Killed within the location of the flip, and behind the first point; the rest on as many ranks, with all that was left.
     if flip:
-        h.true("two ranks: killed with a journal by rows", killed("two", 2, more, "state/journal/vector 1"))
+        h.true("two ranks: killed with a replay log by rows", killed("two", 2, more, "state/replay_log/vector 1"))
     h.true("two ranks: killed with cycles by rows", killed("two", 2, more, "state/state/cycle/states", apart=1 if flip else 3))
     shutil.copytree(h.work / "two", h.work / "one")
     for name, ranks in (("two", 2), ("one", 1)):

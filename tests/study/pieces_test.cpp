@@ -39,16 +39,16 @@ protected:
     return pieces_.emplace(*findings_, resume, true, layout);
   }
   double ask(Pieces& pieces, const char* kind, double value) {
-    const auto answer = pieces.journal()->ask(kind, {}, [&](const auto&) {
+    const auto answer = pieces.replay_log()->ask(kind, {}, [&](const auto&) {
       ++works_;
-      return solve::Journal::Answer{{value}, {}};
+      return solve::ReplayLog::Answer{{value}, {}};
     });
     return answer.numbers.front();
   }
   /// As if the program that wrote the checkpoint had been an older one.
   void age() {
     io::Group all = findings_->load_checkpoint();
-    all.child("journal").set("format", 1);
+    all.child("replay_log").set("format", 1);
     findings_->save_checkpoint(all);
   }
   int works_ = 0;
@@ -76,10 +76,10 @@ TEST_F(Interrupted, APieceUnderWayGoesOnFromItsParts) {
   EXPECT_FALSE(second.known("whole"));
   EXPECT_EQ(second.number("whole", [&] { return 3 * ask(second, "part", 5); }), 6);
   EXPECT_EQ(works_, 1);
-  EXPECT_TRUE(second.journal()->entries().empty()) << "parts of what is known are of no use";
+  EXPECT_TRUE(second.replay_log()->entries().empty()) << "parts of what is known are of no use";
 }
 
-TEST_F(Interrupted, AnotherOrderOfUnknownsLeavesTheJournal) {
+TEST_F(Interrupted, AnotherOrderOfUnknownsLeavesTheReplayLog) {
   (void)ask(begin(false, 1), "part", 2);
   Pieces& other = begin(true, 2);
   EXPECT_FALSE(other.same_layout());
@@ -87,7 +87,7 @@ TEST_F(Interrupted, AnotherOrderOfUnknownsLeavesTheJournal) {
 }
 
 // Vectors that ranks share are written by rows, others as a whole; each comes back in whatever layout.
-TEST_F(Interrupted, AJournalOfAnotherVersionIsRefused) {
+TEST_F(Interrupted, AReplayLogOfAnotherVersionIsRefused) {
   (void)ask(begin(false), "part", 2);
   (void)begin(true);
   age();
@@ -106,32 +106,32 @@ TEST_F(Interrupted, AnswersKeepTheirVectors) {
   };
   const core::Vector kept = numbered(rank + 1), short_one = numbered(1);
   for (const bool by_rows : {false, true}) {
-    using solve::Journal;
+    using solve::ReplayLog;
     Pieces& first = begin(false);
-    first.journal()->by_rows = by_rows ? core::size_of(PETSC_COMM_WORLD) : 0;
-    const auto answer = [&](const Journal* journal) {
-      return Journal::Answer{
-          {3, 4}, "found", {Journal::keep(journal, kept.get()), Journal::keep(journal, short_one.get())}};
+    first.replay_log()->by_rows = by_rows ? core::size_of(PETSC_COMM_WORLD) : 0;
+    const auto answer = [&](const ReplayLog* replay_log) {
+      return ReplayLog::Answer{
+          {3, 4}, "found", {ReplayLog::keep(replay_log, kept.get()), ReplayLog::keep(replay_log, short_one.get())}};
     };
-    (void)first.journal()->ask("one", {1}, [&](const auto&) {
-      return Journal::Answer{{}, {}, answer(first.journal()).vectors};
+    (void)first.replay_log()->ask("one", {1}, [&](const auto&) {
+      return ReplayLog::Answer{{}, {}, answer(first.replay_log()).vectors};
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(600));
-    (void)first.journal()->ask("two", {2}, [&](const auto&) { return answer(first.journal()); });
+    (void)first.replay_log()->ask("two", {2}, [&](const auto&) { return answer(first.replay_log()); });
     Pieces& second = begin(true);
-    const auto never = [](const auto&) -> Journal::Answer { throw Kill(); };
-    (void)second.journal()->ask("one", {1}, never);
-    const Journal::Answer found = second.journal()->ask("two", {2}, never);
+    const auto never = [](const auto&) -> ReplayLog::Answer { throw Kill(); };
+    (void)second.replay_log()->ask("one", {1}, never);
+    const ReplayLog::Answer found = second.replay_log()->ask("two", {2}, never);
     EXPECT_EQ(found.numbers, (std::vector<double>{3, 4}));
     EXPECT_EQ(found.text, "found");
     ASSERT_EQ(found.vectors.size(), 2U);
     EXPECT_EQ(found.vectors[0].whole, !by_rows);
     core::Vector back = core::duplicate(kept.get());
-    Journal::give(found.vectors[0], back.get());
+    ReplayLog::give(found.vectors[0], back.get());
     core::check(VecAXPY(back.get(), -1, kept.get()));
     EXPECT_EQ(core::norm(back.get()), 0) << by_rows;
     EXPECT_GT(core::norm(kept.get()), 0);
-    EXPECT_THROW(Journal::give(found.vectors[0], core::make_vector(PETSC_COMM_WORLD, 7, PETSC_DETERMINE).get()),
+    EXPECT_THROW(ReplayLog::give(found.vectors[0], core::make_vector(PETSC_COMM_WORLD, 7, PETSC_DETERMINE).get()),
                  core::Error);
     remove();
   }

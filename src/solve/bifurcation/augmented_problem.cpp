@@ -336,20 +336,20 @@ std::optional<Refined> refine_here(CycleProblem& problem, const LocatedEvent& ev
 
 std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
                               const NewtonOptions& options) {
-  if (!options.journal) return refine_here(problem, event, u, tangent, options);
+  if (!options.replay_log) return refine_here(problem, event, u, tangent, options);
   const std::vector<double> question{core::norm(u), static_cast<double>(event.event), event.critical.real(),
                                      event.critical.imag()};
-  const auto answer = options.journal->ask("refine", question, [&](const Journal::Answer&) {
+  const auto answer = options.replay_log->ask("refine", question, [&](const ReplayLog::Answer&) {
     const auto r = refine_here(problem, event, u, tangent, options);
-    if (!r) return Journal::Answer{};
-    return Journal::Answer{{r->parameter, r->error, r->quadratic, r->critical.real(), r->critical.imag()},
-                           {},
-                           {Journal::keep(options.journal, r->u.get())}};
+    if (!r) return ReplayLog::Answer{};
+    return ReplayLog::Answer{{r->parameter, r->error, r->quadratic, r->critical.real(), r->critical.imag()},
+                             {},
+                             {ReplayLog::keep(options.replay_log, r->u.get())}};
   });
   if (answer.numbers.empty()) return std::nullopt;
   const std::vector<double>& facts = answer.numbers;
   Refined r{core::duplicate(u), facts[0], facts[1], facts[2], {facts[3], facts[4]}};
-  Journal::give(answer.vectors.at(0), r.u.get());
+  ReplayLog::give(answer.vectors.at(0), r.u.get());
   return r;
 }
 

@@ -1,4 +1,4 @@
-// A look at a solution: tangent, stability, monitors. What a journal keeps of looks and locations.
+// A look at a solution: tangent, stability, monitors. What a replay log keeps of looks and locations.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ using core::check;
 namespace {
 
 // A point, what a look at it found and what that left: counts, values, monitors and warm start; the tangent.
-Journal::Answer pack(const Journal& journal, const State& s, const std::vector<double>& warm) {
+ReplayLog::Answer pack(const ReplayLog& replay_log, const State& s, const std::vector<double>& warm) {
   const Stability& all = s.point.stability;
   std::vector<double> out{static_cast<double>(all.values.size()),
                           static_cast<double>(all.distance.size()),
@@ -28,10 +28,10 @@ Journal::Answer pack(const Journal& journal, const State& s, const std::vector<d
   for (const auto* list : {&all.values, &all.mesh_waves})
     for (const auto& v : *list) out.insert(out.end(), {v.real(), v.imag()});
   for (const auto& list : {all.distance, s.point.monitors, warm}) out.insert(out.end(), list.begin(), list.end());
-  return {std::move(out), {}, {Journal::keep(&journal, s.tangent.get())}};
+  return {std::move(out), {}, {ReplayLog::keep(&replay_log, s.tangent.get())}};
 }
 
-void unpack(const Journal::Answer& answer, State& s, std::vector<double>& warm) {
+void unpack(const ReplayLog::Answer& answer, State& s, std::vector<double>& warm) {
   const double* at = answer.numbers.data();
   const auto next = [&at](double n) {
     const double* begin = std::exchange(at, at + static_cast<std::ptrdiff_t>(n));
@@ -55,18 +55,18 @@ void unpack(const Journal::Answer& answer, State& s, std::vector<double>& warm) 
   s.point.newton_iterations = static_cast<int>(counts[6]);
   s.point.stability.missed = static_cast<int>(counts[7]);
   s.tangent = core::duplicate(s.u.get());
-  Journal::give(answer.vectors.at(0), s.tangent.get());
+  ReplayLog::give(answer.vectors.at(0), s.tangent.get());
 }
 
 }  // namespace
 
 void Follower::inspect(State& s, Vec along) {
-  if (Journal* journal = options_.newton.journal) {
+  if (ReplayLog* replay_log = options_.newton.replay_log) {
     const std::vector<double> question{core::norm(s.u.get()), last_entry(problem_.comm(), s.u.get()),
                                        along ? 1.0 : 0.0};
-    const auto found = journal->ask("look", question, [&](const Journal::Answer&) {
+    const auto found = replay_log->ask("look", question, [&](const ReplayLog::Answer&) {
       look_at(s, along);
-      return pack(*journal, s, memory_.warm);
+      return pack(*replay_log, s, memory_.warm);
     });
     unpack(found, s, memory_.warm);
   } else {
@@ -79,13 +79,13 @@ void Follower::inspect(State& s, Vec along) {
 // Trials that led there are of no use any more.
 bool Follower::locate(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found,
                       State& at) {
-  Journal* journal = options_.newton.journal;
-  if (!journal) return search(a, b, test, tolerance, found, at);
+  ReplayLog* replay_log = options_.newton.replay_log;
+  if (!replay_log) return search(a, b, test, tolerance, found, at);
   const std::vector<double> question{core::norm(a.u.get()), core::norm(b.u.get()), b.point.step, tolerance};
-  const auto answer = journal->ask("locate", question, [&](const Journal::Answer&) {
+  const auto answer = replay_log->ask("locate", question, [&](const ReplayLog::Answer&) {
     const bool done = search(a, b, test, tolerance, found, at);
-    Journal::Answer out = pack(*journal, at, memory_.warm);
-    out.vectors.push_back(Journal::keep(journal, at.u.get()));
+    ReplayLog::Answer out = pack(*replay_log, at, memory_.warm);
+    out.vectors.push_back(ReplayLog::keep(replay_log, at.u.get()));
     out.numbers.insert(out.numbers.end(), {done ? 1.0 : 0.0, found.parameter, found.bracket, found.sensitivity});
     return out;
   });
@@ -93,7 +93,7 @@ bool Follower::locate(const State& a, const State& b, const Test& test, double t
   at.point = a.point;
   unpack(answer, at, memory_.warm);
   const double* facts = answer.numbers.data() + answer.numbers.size() - 4;
-  Journal::give(answer.vectors.at(1), at.u.get());
+  ReplayLog::give(answer.vectors.at(1), at.u.get());
   at.point.parameter = last_entry(problem_.comm(), at.u.get());
   at.point.slope = last_entry(problem_.comm(), at.tangent.get());
   found.parameter = facts[1];

@@ -22,7 +22,7 @@ struct SolveContext {
   Vec row = nullptr;
   double offset = 0;
   core::Gate gate;
-  Journal* journal = nullptr;
+  ReplayLog* replay_log = nullptr;
   std::vector<double> earlier;    // norms of the residuals before those of this solve
   std::vector<double> residuals;  // of the last nonlinear solve, which writes them
   int patience = 0, small_falls = 0;
@@ -47,12 +47,12 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
   PetscCall(SNESGetIterationNumber(snes, &iteration));
   const PetscErrorCode code = c.gate.run([&] {
     // An iterate from which the solver goes on: it was found not to have arrived.
-    if (c.journal && iteration > 0)
-      c.journal->note([&] {
+    if (c.replay_log && iteration > 0)
+      c.replay_log->note([&] {
         std::vector<double> norms = c.earlier;
         const auto kept = std::min<std::ptrdiff_t>(iteration, std::ssize(c.residuals));
         norms.insert(norms.end(), c.residuals.begin(), c.residuals.begin() + kept);
-        return Journal::Answer{std::move(norms), {}, {Journal::keep(c.journal, u)}};
+        return ReplayLog::Answer{std::move(norms), {}, {ReplayLog::keep(c.replay_log, u)}};
       });
     c.problem.linearise(u, c.row);
   });
@@ -281,16 +281,16 @@ Newton::Objects& Newton::objects(Vec like) {
 }
 
 NewtonResult Newton::solve(Vec u, Vec row, double offset) {
-  if (!options_.journal) return solve_from(u, row, offset, {});
-  const Journal::Answer found =
-      options_.journal->ask("newton", {core::norm(u), offset}, [&](const Journal::Answer& so_far) {
-        for (const Journal::Rows& iterate : so_far.vectors) Journal::give(iterate, u);
+  if (!options_.replay_log) return solve_from(u, row, offset, {});
+  const ReplayLog::Answer found =
+      options_.replay_log->ask("newton", {core::norm(u), offset}, [&](const ReplayLog::Answer& so_far) {
+        for (const ReplayLog::Rows& iterate : so_far.vectors) ReplayLog::give(iterate, u);
         const NewtonResult r = solve_from(u, row, offset, so_far.numbers);
         std::vector<double> facts{r.converged ? 1.0 : 0.0, static_cast<double>(r.iterations),
                                   static_cast<double>(r.effort), static_cast<double>(r.linear_iterations), r.residual};
-        return Journal::Answer{std::move(facts), r.reason, {Journal::keep(options_.journal, u)}};
+        return ReplayLog::Answer{std::move(facts), r.reason, {ReplayLog::keep(options_.replay_log, u)}};
       });
-  Journal::give(found.vectors.at(0), u);
+  ReplayLog::give(found.vectors.at(0), u);
   const std::vector<double>& facts = found.numbers;
   return {facts[0] != 0, static_cast<int>(facts[1]), static_cast<int>(facts[2]), static_cast<int>(facts[3]), facts[4],
           found.text};
@@ -309,7 +309,7 @@ NewtonResult Newton::solve_from(Vec u, Vec row, double offset, std::vector<doubl
   }
   o.context.offset = offset;
   o.context.gate = core::Gate(problem_.comm());
-  o.context.journal = options_.journal;
+  o.context.replay_log = options_.replay_log;
   o.context.earlier = std::move(earlier);
   SNES snes = o.snes.get();
   const auto before = static_cast<PetscInt>(o.context.earlier.size());

@@ -139,7 +139,7 @@ StudyResult MeshConvergence::run(Context& context) {
                          e.what()));
       };
       try {
-        const Relocated found = fine->follower->relocate(now.last, *coarse->follower, pieces.journal());
+        const Relocated found = fine->follower->relocate(now.last, *coarse->follower, pieces.replay_log());
         now.last = found.found;
         now.bracket.push_back(found.bracket);
       } catch (const core::NotConverged& e) {

@@ -48,11 +48,11 @@ void CycleFollower::renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent) {
     core::check(VecScale(tangent, 1 / std::sqrt(solve::inner(*problem_, tangent, tangent))));
   };
   try {
-    const auto renewed = solve::Journal::ask(newton_.journal, "phase", {core::norm(u)}, [&](const auto&) {
+    const auto renewed = solve::ReplayLog::ask(newton_.replay_log, "phase", {core::norm(u)}, [&](const auto&) {
       renew();
-      return solve::Journal::Answer{{}, {}, {solve::Journal::keep(newton_.journal, tangent)}};
+      return solve::ReplayLog::Answer{{}, {}, {solve::ReplayLog::keep(newton_.replay_log, tangent)}};
     });
-    solve::Journal::give(renewed.vectors.at(0), tangent);
+    solve::ReplayLog::give(renewed.vectors.at(0), tangent);
   } catch (const core::NotConverged&) {  // singular, at a branch point for one: the old one serves
   }
 }
@@ -65,7 +65,7 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
     core::check(VecCopy(problem_->scatter(c).get(), v));
     return c;
   };
-  const bool saves = newton_.journal != nullptr;
+  const bool saves = newton_.replay_log != nullptr;
   if (saves) (void)round(u);
   if (autonomous()) renew_phase(cycle, u, tangent);
   // Of a branch that has returned there is nothing to go on with.
@@ -106,8 +106,8 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
 
 std::optional<solve::Restart> CycleFollower::restore() {
   pieces_ = std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, layout().order());
-  newton_.journal = continuation_.newton.journal = pieces_->journal();
-  if (newton_.journal) newton_.journal->by_rows = layout().shared ? core::size_of(context_.comm) : 0;
+  newton_.replay_log = continuation_.newton.replay_log = pieces_->replay_log();
+  if (newton_.replay_log) newton_.replay_log->by_rows = layout().shared ? core::size_of(context_.comm) : 0;
   if (!pieces_->state().has_group("cycle")) return std::nullopt;
   const io::Group& state = pieces_->state();
   record_.read(state.group("record"));

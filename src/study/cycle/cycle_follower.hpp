@@ -102,7 +102,7 @@ public:
   [[nodiscard]] std::vector<Located> read(const io::Group& group) const { return read_located(group, stored()); }
   /// Finds the bifurcation that `other` found on another film mesh, with what the journal (may be null) knows of the
   /// way. Throws core::NotConverged or core::DomainError.
-  [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other, solve::Journal* journal);
+  [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other, solve::ReplayLog* replay_log);
   /// How far the steps in time leave the bifurcation uncertain, scaled; NaN if that cannot be told.
   [[nodiscard]] double time_error(const Located& at);
 
@@ -218,8 +218,8 @@ private:
   /// The cycle with the own states of its films on the meshes of `to`.
   [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
   void correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out);
-  [[nodiscard]] solve::Journal::Answer read_off(Vec u, Vec row,
-                                                const std::function<void(solve::Journal::Answer&)>& work);
+  [[nodiscard]] solve::ReplayLog::Answer read_off(Vec u, Vec row,
+                                                  const std::function<void(solve::ReplayLog::Answer&)>& work);
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
   void renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent);

@@ -30,9 +30,9 @@ solve::Cycle CycleFollower::on_film_of(const system::Plant& to, solve::Cycle c) 
   return resampled(to, *system_, std::move(c));
 }
 
-Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other, solve::Journal* journal) {
-  newton_.journal = journal;
-  if (journal) journal->by_rows = layout().shared ? core::size_of(context_.comm) : 0;
+Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other, solve::ReplayLog* replay_log) {
+  newton_.replay_log = replay_log;
+  if (replay_log) replay_log->by_rows = layout().shared ? core::size_of(context_.comm) : 0;
   const solve::Cycle cycle = other.on_film_of(*system_, from.cycle);
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);
@@ -53,11 +53,11 @@ void CycleFollower::correct(Vec u, Vec row, double offset, const solve::NewtonOp
 }
 
 // What a secant reads off the cycle u, once; with a warm start for the next ones.
-solve::Journal::Answer CycleFollower::read_off(Vec u, Vec row,
-                                               const std::function<void(solve::Journal::Answer&)>& work) {
-  solve::Journal::Answer all = solve::Journal::ask(newton_.journal, "secant", {core::norm(u)}, [&](const auto&) {
+solve::ReplayLog::Answer CycleFollower::read_off(Vec u, Vec row,
+                                                 const std::function<void(solve::ReplayLog::Answer&)>& work) {
+  solve::ReplayLog::Answer all = solve::ReplayLog::ask(newton_.replay_log, "secant", {core::norm(u)}, [&](const auto&) {
     problem_->linearise(u, row);
-    solve::Journal::Answer found;
+    solve::ReplayLog::Answer found;
     work(found);
     const std::vector<double> warm = problem_->warm_start();
     found.numbers.insert(found.numbers.end(), warm.begin(), warm.end());
@@ -81,7 +81,7 @@ void CycleFollower::relocate_crossing(core::Vector& u, Relocated& out) {
   if (slope == 0) not_found("the multiplier does not move with the parameter");
   for (;;) {
     correct(u.get(), row.get(), p, newton_, out);
-    const solve::Journal::Answer read = read_off(u.get(), row.get(), [&](solve::Journal::Answer& found) {
+    const solve::ReplayLog::Answer read = read_off(u.get(), row.get(), [&](solve::ReplayLog::Answer& found) {
       double nearest = std::numeric_limits<double>::infinity();
       std::complex<double> closest;
       for (const auto& mu : problem_->multipliers())
@@ -136,12 +136,12 @@ void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
       longest = std::abs(step);
       check(VecWAXPY(u.get(), step, tangent.get(), last.get()));
     }
-    const solve::Journal::Answer read = read_off(u.get(), row.get(), [&](solve::Journal::Answer& found) {
+    const solve::ReplayLog::Answer read = read_off(u.get(), row.get(), [&](solve::ReplayLog::Answer& found) {
       (void)solve::solve_linear(*problem_, rhs.get(), tangent.get(), "tangent_");
       check(VecScale(tangent.get(), 1 / std::sqrt(solve::inner(*problem_, tangent.get(), tangent.get()))));
-      found.vectors = {solve::Journal::keep(newton_.journal, tangent.get())};
+      found.vectors = {solve::ReplayLog::keep(newton_.replay_log, tangent.get())};
     });
-    solve::Journal::give(read.vectors.at(0), tangent.get());
+    solve::ReplayLog::give(read.vectors.at(0), tangent.get());
     const double f = solve::last_entry(problem_->comm(), tangent.get());
     if (out.solves > 1 && f != last_f) curvature = (f - last_f) / step;
     const double next = curvature != 0 ? std::clamp(-f / curvature, -longest, longest) : 0.02 * continuation_.max_step;

@@ -99,7 +99,7 @@ private:
                                             const NewtonOptions& options, Eigen::VectorXd* inner = nullptr);
 
 /// The same for an event met on a branch, for BranchCallbacks::refine; nothing for events without a condition. With a
-/// journal what was found of an event of cycles is kept.
+/// replay log what was found of an event of cycles is kept.
 [[nodiscard]] std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
                                             const NewtonOptions& options);
 [[nodiscard]] std::optional<Refined> refine(problem::System& system, EquilibriumProblem& problem,

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "whirl/solve/newton/extended_problem.hpp"
-#include "whirl/solve/newton/journal.hpp"
+#include "whirl/solve/newton/replay_log.hpp"
 
 namespace whirl::solve {
 
@@ -18,7 +18,7 @@ struct NewtonOptions {
   /// Ends where so many steps in turn have lowered the residual by less than a tenth each; zero: never.
   int patience = 0;
   std::string prefix = "newton_", linear_prefix = "tangent_";  ///< of the PETSc options
-  Journal* journal = nullptr;  ///< keeps solutions and iterates; the problem may then be linearised anywhere
+  ReplayLog* replay_log = nullptr;  ///< keeps solutions and iterates; the problem may then be linearised anywhere
 };
 
 /// What came of a Newton solve; not converging is a fact, not an error.

@@ -1,4 +1,4 @@
-#include "whirl/solve/newton/journal.hpp"
+#include "whirl/solve/newton/replay_log.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,16 +20,16 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
 }  // namespace
 
 // An error that nobody expects leaves its question open.
-struct Journal::UnderWay {
-  UnderWay(Journal& journal, std::size_t place) : all(journal.under_way_) { all.push_back(place); }
+struct ReplayLog::UnderWay {
+  UnderWay(ReplayLog& replay_log, std::size_t place) : all(replay_log.under_way_) { all.push_back(place); }
   ~UnderWay() { all.pop_back(); }
   UnderWay(const UnderWay&) = delete;
   UnderWay& operator=(const UnderWay&) = delete;
   std::vector<std::size_t>& all;
 };
 
-Journal::Answer Journal::ask(const std::string& kind, const std::vector<double>& question,
-                             const std::function<Answer(const Answer& so_far)>& work) {
+ReplayLog::Answer ReplayLog::ask(const std::string& kind, const std::vector<double>& question,
+                                 const std::function<Answer(const Answer& so_far)>& work) {
   const std::size_t here = next_++;
   if (here < entries_.size() && (entries_[here].kind != kind || !same(entries_[here].question, question)))
     entries_.resize(here);
@@ -57,43 +57,43 @@ Journal::Answer Journal::ask(const std::string& kind, const std::vector<double>&
   }
 }
 
-void Journal::close(std::size_t place, State state, Answer answer) {
+void ReplayLog::close(std::size_t place, State state, Answer answer) {
   forget_from(place + 1);
   entries_[place].state = state;
   entries_[place].answer = std::move(answer);
   if (changed) changed();
 }
 
-void Journal::note(const std::function<Answer()>& so_far) {
+void ReplayLog::note(const std::function<Answer()>& so_far) {
   if (under_way_.empty() || !due || !due()) return;
   entries_[under_way_.back()].answer = so_far();
   if (changed) changed();
 }
 
-Journal::Rows Journal::keep(const Journal* journal, Vec v) {
+ReplayLog::Rows ReplayLog::keep(const ReplayLog* replay_log, Vec v) {
   PetscInt begin = 0, size = 0;
   core::check(VecGetOwnershipRange(v, &begin, nullptr));
   core::check(VecGetSize(v, &size));
   const auto total = static_cast<std::size_t>(size);
-  if (journal && journal->by_rows != core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(v))))
+  if (replay_log && replay_log->by_rows != core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(v))))
     return {true, 0, total, core::gather(v)};
   const core::ReadArray a(v);
   return {false, static_cast<std::size_t>(begin), total, {a.data(), a.data() + a.size()}};
 }
 
-void Journal::give(const Rows& rows, Vec v) {
+void ReplayLog::give(const Rows& rows, Vec v) {
   if (rows.whole)
     core::fill(v, rows.values);
   else
     core::fill(v, rows.begin, rows.values);
 }
 
-void Journal::forget_from(std::size_t place) {
+void ReplayLog::forget_from(std::size_t place) {
   entries_.resize(std::min(place, entries_.size()));
   next_ = std::min(place, next_);
 }
 
-void Journal::begin(std::vector<Entry> entries) {
+void ReplayLog::begin(std::vector<Entry> entries) {
   entries_ = std::move(entries);
   next_ = 0;
 }

@@ -17,7 +17,7 @@ namespace whirl::solve {
 /// question may ask others on its way, whose answers are of no use any more once it is answered itself. NotConverged
 /// and DomainError are answers too. Every rank asks alike and holds the same, but for its rows of distributed vectors.
 /// Nothing here communicates but keep(), give(), `due` and `changed`.
-class Journal {
+class ReplayLog {
 public:
   /// A distributed vector: the whole of it on every rank, or of each rank some rows.
   struct Rows {
@@ -41,17 +41,17 @@ public:
   /// The answer known, or what `work` finds; `so_far` is what an interrupted `work` had noted last, else empty.
   Answer ask(const std::string& kind, const std::vector<double>& question,
              const std::function<Answer(const Answer& so_far)>& work);
-  /// The same where there may be no journal: then `work` finds it.
-  static Answer ask(Journal* journal, const std::string& kind, const std::vector<double>& question,
+  /// The same where there may be no replay log: then `work` finds it.
+  static Answer ask(ReplayLog* replay_log, const std::string& kind, const std::vector<double>& question,
                     const std::function<Answer(const Answer& so_far)>& work) {
-    return journal ? journal->ask(kind, question, work) : work({});
+    return replay_log ? replay_log->ask(kind, question, work) : work({});
   }
   /// What the question under way has come to, if anybody wants to know now (see `due`).
   void note(const std::function<Answer()>& so_far);
 
   /// What an answer keeps of v: this rank's entries if the ranks of a study share them (by_rows) or nothing is saved
-  /// (`journal` is null), else all of them. Collective on v.
-  [[nodiscard]] static Rows keep(const Journal* journal, Vec v);
+  /// (`replay_log` is null), else all of them. Collective on v.
+  [[nodiscard]] static Rows keep(const ReplayLog* replay_log, Vec v);
   /// The other way, into a vector in whatever layout. core::Error if it is of another size. Collective on v.
   static void give(const Rows& rows, Vec v);
 

@@ -5,10 +5,10 @@
 #include "branch_support.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
-#include "whirl/solve/newton/journal.hpp"
+#include "whirl/solve/newton/replay_log.hpp"
 
 using namespace whirl;
-using solve::Journal;
+using solve::ReplayLog;
 using test::Column;
 
 namespace {
@@ -40,7 +40,7 @@ struct Branch {
   static constexpr double speed = 2;
   struct Saved {
     std::optional<solve::Restart> restart;
-    std::vector<Journal::Entry> journal;
+    std::vector<ReplayLog::Entry> replay_log;
     std::size_t points = 0, events = 0;
   };
   struct Found : test::Recorded {
@@ -50,7 +50,7 @@ struct Branch {
   int evaluations = 0, changes = 0;
   Saved saved;
 
-  // Killed when the journal has changed so many times.
+  // Killed when the replay log has changed so many times.
   void run(int kill_at, const Saved* from = nullptr) {
     const auto formula = [this]<class T>(double angle, const Column<T>& x, const Column<T>& xdot, T p) {
       ++evaluations;
@@ -65,15 +65,15 @@ struct Branch {
     solve::CycleOptions cycle;
     cycle.degree = 4;
     solve::CycleProblem problem(MPI_COMM_WORLD, system, cycle, solve::uniform_mesh(12));
-    Journal journal;
-    if (from) journal.begin(from->journal);
-    journal.due = [] { return true; };
-    journal.changed = [&] {
-      saved.journal = journal.entries();
+    ReplayLog replay_log;
+    if (from) replay_log.begin(from->replay_log);
+    replay_log.due = [] { return true; };
+    replay_log.changed = [&] {
+      saved.replay_log = replay_log.entries();
       if (++changes == kill_at) throw Kill();
     };
     solve::ContinuationOptions options = test::range(-1, 1, 0.3);
-    options.newton.journal = &journal;
+    options.newton.replay_log = &replay_log;
     auto callbacks = test::recording(problem, found);
     callbacks.cycles = true;
     callbacks.stability = [&](Vec) { return test::multipliers(problem); };
@@ -82,7 +82,7 @@ struct Branch {
     };
     callbacks.on_suspicion = [&](const solve::Suspicion& x) { found.suspected.push_back(x); };
     callbacks.checkpoint = [&](const solve::Settled& at, Vec u, Vec t) {
-      journal.begin();
+      replay_log.begin();
       saved = {solve::Restart{copy(u), copy(t), at.next_step, at.point, copy(*at.memory)},
                {},
                found.points.size(),
@@ -100,19 +100,19 @@ struct Branch {
   }
 };
 
-Journal::Answer number(double x) {
+ReplayLog::Answer number(double x) {
   return {{x}, {}};
 }
 
 }  // namespace
 
-TEST(Journal, ARepetitionIsToldWhatWasFound) {
-  Journal first;
+TEST(ReplayLog, ARepetitionIsToldWhatWasFound) {
+  ReplayLog first;
   (void)first.ask("sum", {1}, [](const auto&) { return number(2); });
   (void)first.ask("sum", {2}, [](const auto&) { return number(4); });
-  Journal second;
+  ReplayLog second;
   second.begin(first.entries());
-  const auto never = [](const auto&) -> Journal::Answer { throw Kill(); };
+  const auto never = [](const auto&) -> ReplayLog::Answer { throw Kill(); };
   EXPECT_EQ(second.ask("sum", {1 + 1e-12}, never).numbers.front(), 2) << "another number of ranks rounds otherwise";
   // Another question: what stood there is no answer to it, nor is the rest.
   EXPECT_EQ(second.ask("sum", {3}, [](const auto&) { return number(6); }).numbers.front(), 6);
@@ -122,15 +122,15 @@ TEST(Journal, ARepetitionIsToldWhatWasFound) {
   EXPECT_EQ(second.entries().size(), 1U);
 }
 
-TEST(Journal, AQuestionUnderWayGoesOnFromItsParts) {
-  Journal first;
+TEST(ReplayLog, AQuestionUnderWayGoesOnFromItsParts) {
+  ReplayLog first;
   first.due = [] { return true; };
-  const auto whole = [](Journal& journal, bool killed, int& works) {
-    return journal.ask("whole", {}, [&](const auto&) {
-      const double part = journal.ask("part", {}, [&](const auto&) { return number(++works); }).numbers[0];
-      return journal.ask("other part", {}, [&](const Journal::Answer& so_far) {
+  const auto whole = [](ReplayLog& replay_log, bool killed, int& works) {
+    return replay_log.ask("whole", {}, [&](const auto&) {
+      const double part = replay_log.ask("part", {}, [&](const auto&) { return number(++works); }).numbers[0];
+      return replay_log.ask("other part", {}, [&](const ReplayLog::Answer& so_far) {
         if (!so_far.numbers.empty()) return number(part + so_far.numbers[0]);
-        journal.note([] { return number(10); });
+        replay_log.note([] { return number(10); });
         if (killed) throw Kill();
         return number(-1);
       });
@@ -138,24 +138,24 @@ TEST(Journal, AQuestionUnderWayGoesOnFromItsParts) {
   };
   int works = 0;
   EXPECT_THROW((void)whole(first, true, works), Kill);
-  Journal second;
+  ReplayLog second;
   second.begin(first.entries());
   EXPECT_EQ(whole(second, false, works).numbers[0], 11);
   EXPECT_EQ(works, 1);
   EXPECT_EQ(second.entries().size(), 1U) << "parts of what is answered are of no use";
 }
 
-TEST(Journal, AnErrorIsAnAnswer) {
-  Journal journal;
+TEST(ReplayLog, AnErrorIsAnAnswer) {
+  ReplayLog replay_log;
   int works = 0;
   const auto ask = [&] {
-    (void)journal.ask("fails", {}, [&](const auto&) -> Journal::Answer {
+    (void)replay_log.ask("fails", {}, [&](const auto&) -> ReplayLog::Answer {
       ++works;
       throw core::DomainError("the film is too thin");
     });
   };
   EXPECT_THROW(ask(), core::DomainError);
-  journal.begin(journal.entries());
+  replay_log.begin(replay_log.entries());
   try {
     ask();
     FAIL();
@@ -168,7 +168,7 @@ TEST(Journal, AnErrorIsAnAnswer) {
 
 // Newton's iterates, looks, refinements: killed after each of them, the branch is the same, and hardly more is
 // computed.
-TEST(Journal, ABranchGoesOnWhereItWasKilled) {
+TEST(ReplayLog, ABranchGoesOnWhereItWasKilled) {
   Branch whole;
   whole.run(-1);
   ASSERT_EQ(whole.found.events.size(), 2U);
