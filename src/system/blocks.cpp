@@ -103,7 +103,7 @@ const problem::SparseBlock& RotorSystem::MachineBlocks::l0() {
 void RotorSystem::MachineBlocks::load(double angle, Eigen::VectorXd& load) {
   system_.prepare_loads(false);
   const RotorPart& hub = *system_.hub_;
-  const auto [c, s] = RotorPart::unbalance_factors(system_.moment(angle, nullptr, nullptr));
+  const auto [c, s] = RotorPart::unbalance_factors(system_.instant(angle, nullptr, nullptr));
   load.setZero(size());
   for (Eigen::Index i = 0; i < size(); ++i) {
     const auto k = static_cast<std::size_t>(i);

@@ -123,11 +123,11 @@ void FilmPart::scales(double* states, double* rows) const {
     });
 }
 
-void FilmPart::residual(const Moment& /*at*/, double* f) const {
+void FilmPart::residual(const Instant& /*at*/, double* f) const {
   if (rows() > 0) std::copy(response_.residual.begin(), response_.residual.end(), f);
 }
 
-void FilmPart::speed_derivative(const Moment& /*at*/, double* f) const {
+void FilmPart::speed_derivative(const Instant& /*at*/, double* f) const {
   if (rows() > 0) std::copy(response_.d_speed.begin(), response_.d_speed.end(), f);
 }
 

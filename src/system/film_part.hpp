@@ -61,8 +61,8 @@ public:
   [[nodiscard]] PetscInt rows() const override { return share_.rows(); }
   [[nodiscard]] std::vector<problem::Field> fields(const std::string& name) const override;
   void scales(double* states, double* rows) const override;
-  void residual(const Moment& at, double* f) const override;
-  void speed_derivative(const Moment& at, double* f) const override;
+  void residual(const Instant& at, double* f) const override;
+  void speed_derivative(const Instant& at, double* f) const override;
   void count_entries(std::span<PetscInt> count) const override;
   /// j += alpha times the derivatives of its rows in states and journal, and of its forces in its states; sigma times
   /// those in rates. Without `values` their places alone.

@@ -12,7 +12,7 @@
 namespace whirl::system {
 
 /// A state of the machine, and how its shaft turns there.
-struct Moment {
+struct Instant {
   double angle;         // rad
   double speed;         // Omega [rad/s]
   double acceleration;  // alpha [rad/s^2]
@@ -37,9 +37,9 @@ public:
   /// Typical magnitudes of its states and rows here [rows()].
   virtual void scales(double* states, double* rows) const = 0;
   /// f [rows()] = its rows, the forces at the ports of other parts left out. Films: as evaluated last. Collective.
-  virtual void residual(const Moment& at, double* f) const = 0;
+  virtual void residual(const Instant& at, double* f) const = 0;
   /// f [rows()] = their derivatives in the speed, likewise.
-  virtual void speed_derivative(const Moment& at, double* f) const = 0;
+  virtual void speed_derivative(const Instant& at, double* f) const = 0;
   /// Adds how many entries its rows here have in the Jacobian [local rows].
   virtual void count_entries(std::span<PetscInt> count) const = 0;
 };

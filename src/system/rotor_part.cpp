@@ -251,7 +251,7 @@ void RotorPart::scales(double* s, double* r) const {
 
 // The centre of unbalance moves along (cos, sin)(angle): its acceleration has a part towards the axis and one along the
 // turn.
-std::array<double, 2> RotorPart::unbalance_factors(const Moment& at) {
+std::array<double, 2> RotorPart::unbalance_factors(const Instant& at) {
   if (!at.forcing) return {};
   const double c = std::cos(at.angle), s = std::sin(at.angle), inward = at.speed * at.speed;
   return {inward * c + at.acceleration * s, inward * s - at.acceleration * c};
@@ -265,7 +265,7 @@ core::Vector RotorPart::own(Vec x) const {
   return out;
 }
 
-core::Vector RotorPart::products(const Matrices& m, const Moment& at) const {
+core::Vector RotorPart::products(const Matrices& m, const Instant& at) const {
   const core::Vector x = own(at.x);
   core::Vector sum = core::duplicate(x.get());
   check(VecSet(sum.get(), 0.0));
@@ -278,7 +278,7 @@ core::Vector RotorPart::products(const Matrices& m, const Moment& at) const {
   return sum;
 }
 
-void RotorPart::residual(const Moment& at, double* f) const {
+void RotorPart::residual(const Instant& at, double* f) const {
   const core::Vector sum = products(matrices_, at);
   const core::ReadArray sa(sum.get());
   const auto [c, s] = unbalance_factors(at);
@@ -288,7 +288,7 @@ void RotorPart::residual(const Moment& at, double* f) const {
   }
 }
 
-void RotorPart::speed_derivative(const Moment& at, double* f) const {
+void RotorPart::speed_derivative(const Instant& at, double* f) const {
   const core::Vector x = own(at.x), sum = core::duplicate(x.get());
   check(MatMult(matrices_.turning.get(), x.get(), sum.get()));
   if (by_speed_.at_rest) {

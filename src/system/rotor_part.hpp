@@ -83,14 +83,14 @@ public:
                                             const std::array<double, 4>& velocity) const;
   [[nodiscard]] const Unbalances& unbalance() const { return unbalance_; }
   /// Factors of the cosine and the sine parts of the unbalance [1/s^2].
-  [[nodiscard]] static std::array<double, 2> unbalance_factors(const Moment& at);
+  [[nodiscard]] static std::array<double, 2> unbalance_factors(const Instant& at);
 
   [[nodiscard]] PetscInt row() const override { return 0; }
   [[nodiscard]] PetscInt rows() const override { return 2 * (end_ - begin_); }
   [[nodiscard]] std::vector<problem::Field> fields(const std::string& name) const override;
   void scales(double* states, double* rows) const override;
-  void residual(const Moment& at, double* f) const override;
-  void speed_derivative(const Moment& at, double* f) const override;
+  void residual(const Instant& at, double* f) const override;
+  void speed_derivative(const Instant& at, double* f) const override;
   void count_entries(std::span<PetscInt> count) const override;
   /// j += at_rest dF/dx without what grows with speed (gyroscopic, circulatory), gyroscopic times that of unit speed,
   /// rates times dF/d(dx/dt): all entries, if need be zero. Not assembled.
@@ -113,7 +113,7 @@ public:
   /// Differences of two trains over `step`. Exact where the rows are linear in a number of the train. Collective.
   [[nodiscard]] Rates rates(const Change& change, const Train& minus, const Train& plus, double step);
   /// f [rows()] = what they do to the rows. Collective.
-  void apply(const Rates& rates, const Moment& at, double* f) const;
+  void apply(const Rates& rates, const Instant& at, double* f) const;
 
 private:
   /// What load is linear in: gravity along -y and x [m/s^2], the load of a rigid rotor [N], the weights of the
@@ -148,7 +148,7 @@ private:
   [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
   [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
   /// What the matrices give on this rank's rows; those that are empty give nothing. Collective.
-  [[nodiscard]] core::Vector products(const Matrices& m, const Moment& at) const;
+  [[nodiscard]] core::Vector products(const Matrices& m, const Instant& at) const;
   /// This rank's states of the hub. Collective.
   [[nodiscard]] core::Vector own(Vec x) const;
 

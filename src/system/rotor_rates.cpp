@@ -97,7 +97,7 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
   return out;
 }
 
-void RotorPart::apply(const Rates& rates, const Moment& at, double* f) const {
+void RotorPart::apply(const Rates& rates, const Instant& at, double* f) const {
   const auto [c, s] = unbalance_factors(at);
   for (PetscInt i = 0; i < rows(); ++i) {
     const auto at_row = static_cast<std::size_t>(i), all = static_cast<std::size_t>(2 * begin_ + i);

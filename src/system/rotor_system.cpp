@@ -59,7 +59,7 @@ void RotorSystem::set_parameter(double p) {
   varying_.value = p;
 }
 
-Moment RotorSystem::moment(double angle, Vec x, Vec xdot) const {
+Instant RotorSystem::instant(double angle, Vec x, Vec xdot) const {
   return {angle, speed_, acceleration_, forcing_, x, xdot};
 }
 
@@ -88,7 +88,7 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   prepare_loads(false);
   evaluate_films(x, xdot, film::Need::force);
   const core::WriteArray fa(f);
-  for (const Part* part : parts()) part->residual(moment(angle, x, xdot), fa.data() + part->row());
+  for (const Part* part : parts()) part->residual(instant(angle, x, xdot), fa.data() + part->row());
   subtract(&film::Response::force, fa.data());
 }
 
@@ -111,7 +111,7 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
   if (varying_.train) return slope().derivative(angle, x, xdot, f);
   evaluate_films(x, xdot, film::Need::tangents);
   const core::WriteArray fa(f);
-  for (const Part* part : parts()) part->speed_derivative(moment(angle, x, xdot), fa.data() + part->row());
+  for (const Part* part : parts()) part->speed_derivative(instant(angle, x, xdot), fa.data() + part->row());
   subtract(&film::Response::d_speed, fa.data());
 }
 

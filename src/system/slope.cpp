@@ -65,7 +65,7 @@ void RotorSystem::Slope::derivative(double angle, Vec x, Vec xdot, Vec f) {
   core::check(VecSet(f, 0.0));
   {
     const core::WriteArray fa(f);
-    s.hub_->apply(hub_, s.moment(angle, x, xdot), fa.data());
+    s.hub_->apply(hub_, s.instant(angle, x, xdot), fa.data());
   }
   if (films_.empty() && places_.empty()) return;
 

@@ -60,7 +60,7 @@ TEST_P(Parts, MeetAtPortsAlone) {
   }
   const std::vector<double> whole = s.gather(x.get());
   const auto films = s.film_responses(whole.data(), film::Need::tangents);
-  const system::Moment at{0.4, 250.0, 30.0, true, x.get(), xdot.get()};
+  const system::Instant at{0.4, 250.0, 30.0, true, x.get(), xdot.get()};
   for (const bool speed : {false, true}) {
     std::vector<double> alone(static_cast<std::size_t>(hub.rows()));
     if (speed) {

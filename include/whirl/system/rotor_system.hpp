@@ -21,7 +21,7 @@ class FilmPart;
 class Part;
 class RotorPart;
 class RotorSystem;
-struct Moment;
+struct Instant;
 
 /// Finds static equilibria: what solvers do, which the equations need where an element carries no static load.
 class RestFinder {
@@ -247,7 +247,7 @@ private:
   void drop_loss() noexcept;
   /// Made when first wanted at this value of the parameter. Collective.
   [[nodiscard]] Slope& slope();
-  [[nodiscard]] Moment moment(double angle, Vec x, Vec xdot) const;
+  [[nodiscard]] Instant instant(double angle, Vec x, Vec xdot) const;
   /// Takes forces on journals, by ports, from this rank's rows: B f in the equation above.
   void subtract(const std::vector<std::array<double, 4>>& forces, double* rows) const;
   /// The same of one component of the films' responses.
