@@ -144,7 +144,7 @@ std::optional<std::vector<double>> coarse_start(const Rows& rows, const ThdSetup
   if (!other) return {};
   try {
     const Rows coarse(*other, rows.comm());
-    Thd thd(coarse, coarser(setup, rows, coarse), interpolate(rows, coarse, thickness, 1));
+    ThdSolver thd(coarse, coarser(setup, rows, coarse), interpolate(rows, coarse, thickness, 1));
     (void)thd.solve();
     return interpolate_state(coarse, rows, thd.state());
   } catch (const core::NotConverged&) {  // on all ranks; the mesh that is wanted may find it

@@ -18,7 +18,7 @@
 #include "bench/timing.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/core/shell.hpp"
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace {
 
@@ -165,7 +165,7 @@ void row(double wanted, const Case& c, double stream) {
                  newton[0], cold.wall, newton[1], warm.wall, most);
     return;
   }
-  auto thd = std::make_unique<thermal::Thd>(rows, setup, h);
+  auto thd = std::make_unique<thermal::ThdSolver>(rows, setup, h);
   thermal::ThdSolve solved;
   const bench::Timing time = bench::least(PETSC_COMM_WORLD, 1, [&] { solved = thd->solve(); });
   const double most = memory();

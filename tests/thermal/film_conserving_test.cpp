@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "whirl/core/error.hpp"
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -192,7 +192,7 @@ TEST(FilmConserving, BalanceOfABearingCloses) {
     setup.bush.convection = 80;
     setup.bush.ambient = 313.15;
     setup.journal.type = WallOptions::Type::adiabatic;
-    Thd thd(rows, setup, thickness(rows, 0.7));
+    ThdSolver thd(rows, setup, thickness(rows, 0.7));
     EXPECT_TRUE(thd.solve().converged);
     const FlowReport r = thd.flow().report(thd.flows());
     EXPECT_LT(std::abs(thd.budget().residual()), 1e-8 * r.power) << k;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -51,7 +51,7 @@ double sum(const Rows& rows, const std::vector<double>& values) {
 }
 
 // W [r, n]
-std::vector<double> dissipation_of(const Rows& rows, const Thd& thd) {
+std::vector<double> dissipation_of(const Rows& rows, const ThdSolver& thd) {
   std::vector<double> out = thd.flow().expansion(thd.flows());
   const auto l = at(rows.mesh().across);
   for (std::size_t c = 0; c < out.size(); ++c) {
@@ -68,7 +68,7 @@ TEST(FilmMaps, CouetteFlowHeatsBothWallsAlike) {
     ThdSetup setup = setup_of(false);
     setup.ambient = setup.bush.temperature = setup.journal.temperature = 320;
     if (alone) setup.journal.type = WallOptions::Type::adiabatic;
-    Thd thd(rows, setup, thickness_of(rows, 0));
+    ThdSolver thd(rows, setup, thickness_of(rows, 0));
     EXPECT_TRUE(thd.solve().converged);
     const double whole = 0.02 * 15 * 15 / 2e-5;  // W/m^2
     const std::vector<double> bush = thd.wall_heat(false), journal = thd.wall_heat(true),
@@ -94,7 +94,7 @@ TEST(FilmMaps, AddUpToTheBudget) {
   setup.bush.conductivity = 45;
   setup.bush.radius = 0.025;
   setup.bush.convection = 50;
-  Thd thd(rows, setup, thickness_of(rows, 0.5));
+  ThdSolver thd(rows, setup, thickness_of(rows, 0.5));
   EXPECT_TRUE(thd.solve().converged);
   const EnergyBudget budget = thd.budget();
   const FlowReport report = thd.flow().report(thd.flows());

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -203,7 +203,7 @@ TEST_P(BothLaws, BalanceOfABearingCloses) {
   setup.bush.ambient = 313.15;
   setup.journal.type = WallOptions::Type::isothermal;
   setup.journal.temperature = 313.15;
-  Thd thd(rows, setup, thickness(rows, 145e-6, 0.5));
+  ThdSolver thd(rows, setup, thickness(rows, 145e-6, 0.5));
   EXPECT_TRUE(thd.solve().converged);
   const FlowReport r = thd.flow().report(thd.flows());
   EXPECT_NEAR(r.heat + r.expansion, r.power, 1e-10 * r.power);

@@ -80,7 +80,7 @@ TEST(ThdCoarse, StartsFindTheSame) {
   for (const int start : {0, 100}) {
     ThdSetup setup = gas_film();
     setup.coarse_start = start;
-    Thd thd(rows, setup, h);
+    ThdSolver thd(rows, setup, h);
     EXPECT_TRUE(thd.solve().converged);
     const EnergyBudget budget = thd.budget();
     EXPECT_LT(std::abs(budget.residual()), 1e-9 * budget.heat);

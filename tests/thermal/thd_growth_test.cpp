@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -61,7 +61,7 @@ ThdSetup setup_of(double speed, double ambient) {
 TEST(ThdGrowth, OfAUniformRiseIsExact) {
   const Rows rows(mesh_of(16, 8, 4), PETSC_COMM_WORLD);
   const std::vector<double> cold = thickness_of(rows);
-  Thd thd(rows, setup_of(0, 340), cold);
+  ThdSolver thd(rows, setup_of(0, 340), cold);
   EXPECT_TRUE(thd.solve().converged);
   const double grown = (1.2e-5 - 0.7e-5) * radius * 40;
   for (std::size_t c = 0; c < cold.size(); ++c) EXPECT_NEAR(thd.thickness()[c] - cold[c], grown, 1e-9 * grown);
@@ -71,7 +71,7 @@ TEST(ThdGrowth, OfAUniformRiseIsExact) {
 TEST(ThdGrowth, IsThatOfTheSolids) {
   const Rows rows(mesh_of(24, 12, 4), PETSC_COMM_WORLD);
   const std::vector<double> cold = thickness_of(rows);
-  Thd thd(rows, setup_of(1e4, 300), cold);
+  ThdSolver thd(rows, setup_of(1e4, 300), cold);
   EXPECT_TRUE(thd.solve().converged);
   const std::vector<double> bush = thd.bush()->growth(thd.bush_temperature(), 300),
                             journal = thd.journal()->growth(thd.journal_temperature(), 300);
@@ -93,7 +93,7 @@ TEST(ThdGrowth, ConvergesWithTheMesh) {
     const Rows rows(mesh_of(12 * m, 6 * m, 3 * m), PETSC_COMM_WORLD);
     ThdSetup setup = setup_of(1e4, 300);
     setup.bush.layers = setup.journal.layers = 3 * m;
-    Thd thd(rows, setup, thickness_of(rows));
+    ThdSolver thd(rows, setup, thickness_of(rows));
     EXPECT_TRUE(thd.solve().converged);
     double sums[2] = {};
     for (int j = rows.begin(); j < rows.end(); ++j)
@@ -116,14 +116,14 @@ TEST(ThdGrowth, SaysWhereTheFilmCloses) {
   ThdSetup setup = setup_of(0, 400);
   setup.bush.expansion = 1e-6;
   setup.journal.expansion = 2e-5;
-  Thd thd(rows, setup, thickness_of(rows));
+  ThdSolver thd(rows, setup, thickness_of(rows));
   EXPECT_THROW((void)thd.solve(), core::NotConverged);
 }
 
 // Another film goes on from where one has come to.
 TEST(ThdGrowth, GoesOnFromAState) {
   const Rows rows(mesh_of(24, 12, 4), PETSC_COMM_WORLD);
-  Thd one(rows, setup_of(1e4, 300), thickness_of(rows)), other(rows, setup_of(1e4, 300), thickness_of(rows));
+  ThdSolver one(rows, setup_of(1e4, 300), thickness_of(rows)), other(rows, setup_of(1e4, 300), thickness_of(rows));
   const ThdSolve first = one.solve();
   other.start(one.state());
   const ThdSolve again = other.solve();

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -40,7 +40,7 @@ Numbers solve(int around, int along, int across, double speed, void (*change)(Th
     for (int i = 0; i < around; ++i) h.push_back(2e-5 * (1 - 0.5 * std::cos(mesh.theta(i))));
   ThdSetup setup = setup_of_a(rows, speed);
   if (change) change(setup);
-  Thd thd(rows, setup, h);
+  ThdSolver thd(rows, setup, h);
   Numbers out;
   out.cost = thd.solve();
   double sums[2] = {};

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::thermal {
 
@@ -17,11 +17,11 @@ namespace whirl::thermal {
 /// Values [r, n, width] at the nodes of one mesh at those of another, linear between nodes. Collective.
 [[nodiscard]] std::vector<double> interpolate(const Rows& from, const Rows& to, const std::vector<double>& values,
                                               int width);
-/// Thd::state() of one mesh for another: linear between the centres of layers too. Collective.
+/// ThdSolver::state() of one mesh for another: linear between the centres of layers too. Collective.
 [[nodiscard]] std::vector<double> interpolate_state(const Rows& from, const Rows& to, const std::vector<double>& state);
 
-/// Thd::state() from the solution on a coarser mesh, itself begun from a coarser one. None where there is no coarser
-/// mesh, `setup.coarse_start` does not want one, or nothing is found there. Collective.
+/// ThdSolver::state() from the solution on a coarser mesh, itself begun from a coarser one. None where there is no
+/// coarser mesh, `setup.coarse_start` does not want one, or nothing is found there. Collective.
 [[nodiscard]] std::optional<std::vector<double>> coarse_start(const Rows& rows, const ThdSetup& setup,
                                                               const std::vector<double>& thickness);
 

@@ -57,7 +57,7 @@ std::optional<double> zero(const std::function<double(double)>& f, double a, dou
 }  // namespace
 
 void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, double ambient) {
-  thermal::Thd& thd = film.thd();
+  thermal::ThdSolver& thd = film.thd();
   const thermal::FlowReport wanted_report = thd.flow().report(thd.flows());
   const HeldValues wanted = values_of(wanted_report);
   const TemperatureNumbers t = temperature_numbers(film, thd.temperature());

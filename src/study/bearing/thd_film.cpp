@@ -129,7 +129,7 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   setup.mixed = grooves_of(rows_, flow_, [&](std::size_t k) { return o.grooves[k].mixing; });
   setup.tolerance = o.tolerance;
   setup.most_iterations = o.most_iterations;
-  thd_ = std::make_unique<thermal::Thd>(rows_, std::move(setup), thickness_);
+  thd_ = std::make_unique<thermal::ThdSolver>(rows_, std::move(setup), thickness_);
 }
 
 std::vector<int> ThdFilm::grooves() const {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "whirl/study/bearing/thd.hpp"
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::study {
 
@@ -31,7 +31,7 @@ public:
   /// In clearances; rad, from +x.
   [[nodiscard]] double eccentricity() const { return std::hypot(place_[0], place_[1]) / clearance_; }
   [[nodiscard]] double attitude() const { return std::atan2(place_[1], place_[0]); }
-  [[nodiscard]] thermal::Thd& thd() { return *thd_; }
+  [[nodiscard]] thermal::ThdSolver& thd() { return *thd_; }
   /// Whether the temperatures settled. Collective.
   bool solve() { return (cost_ = thd_->solve()).converged; }
   [[nodiscard]] const thermal::ThdSolve& cost() const { return cost_; }
@@ -65,7 +65,7 @@ private:
   std::vector<double> supply_;  // K [r, n]
   double ambient_, clearance_;
   std::array<double, 2> place_;
-  std::unique_ptr<thermal::Thd> thd_;
+  std::unique_ptr<thermal::ThdSolver> thd_;
   thermal::ThdSolve cost_;
 };
 

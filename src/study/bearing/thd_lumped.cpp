@@ -11,7 +11,7 @@ namespace whirl::study {
 
 void put_lumped(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options, const film::Geometry& geometry) {
   if (film.is_gas()) return;
-  thermal::Thd& thd = film.thd();
+  thermal::ThdSolver& thd = film.thd();
   const double area = 2 * std::numbers::pi * geometry.radius * geometry.length;
   const auto wall = [&](const thermal::WallOptions& side, const std::vector<double>& surface) {
     const bool adiabatic = side.type == thermal::WallOptions::Type::adiabatic;

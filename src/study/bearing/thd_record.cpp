@@ -60,7 +60,7 @@ void put_heat(io::Group& group, ThdFilm& film) {
   const thermal::Mesh& mesh = rows.mesh();
   const auto n = static_cast<std::size_t>(mesh.nodes_around()), r = static_cast<std::size_t>(rows.count()),
              l = static_cast<std::size_t>(mesh.across);
-  thermal::Thd& thd = film.thd();
+  thermal::ThdSolver& thd = film.thd();
   const auto put = [&](const char* name, std::vector<double> watts, const char* description) {
     for (std::size_t c = 0; c < watts.size(); ++c)
       watts[c] /= mesh.width(static_cast<int>(c % n)) * mesh.depth(rows.begin() + static_cast<int>(c / n));
@@ -160,7 +160,7 @@ void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geome
   group.put("theta", theta, "rad", "of the nodes around, from +x");
   group.put("z", z, "m", "of the nodes along the shaft, from the mid-plane of the bearing");
   group.put("radius", std::vector<double>{geometry.radius}, "m", "of the journal");
-  thermal::Thd& thd = film.thd();
+  thermal::ThdSolver& thd = film.thd();
   group.put("pressure", by_rows(rows, {r, n}, thd.flow().pressure(), "Pa",
                                 "pressure [along][around]: absolute of a gas, above the ambient's of a liquid"));
   group.put("pressure_isothermal", by_rows(rows, {r, n}, film.isothermal().pressure, "Pa",

@@ -60,7 +60,7 @@ std::span<const ThdColumn> thd_columns() {
 }
 
 std::vector<double> thd_row(ThdFilm& film, double speed) {
-  thermal::Thd& thd = film.thd();
+  thermal::ThdSolver& thd = film.thd();
   const thermal::FlowReport report = thd.flow().report(thd.flows());
   const thermal::EnergyBudget budget = thd.budget();
   const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
@@ -86,7 +86,7 @@ std::vector<double> thd_row(ThdFilm& film, double speed) {
 }
 
 void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options) {
-  thermal::Thd& thd = film.thd();
+  thermal::ThdSolver& thd = film.thd();
   const thermal::FlowReport report = thd.flow().report(thd.flows());
   const thermal::EnergyBudget budget = thd.budget();
   const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
@@ -148,7 +148,7 @@ std::vector<std::string> extremes_at_orifices(ThdFilm& film) {
     MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, rows.comm());
     if (most[0] >= most[1]) out.emplace_back(name);
   };
-  thermal::Thd& thd = film.thd();
+  thermal::ThdSolver& thd = film.thd();
   add("max_pressure", thd.flow().pressure(), 1);
   add("temperature.minimum", thd.temperature(), -1);
   add("temperature.maximum", thd.temperature(), 1);

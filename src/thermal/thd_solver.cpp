@@ -1,4 +1,4 @@
-#include "whirl/thermal/thd.hpp"
+#include "whirl/thermal/thd_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +67,7 @@ Solid journal_of(const Rows& rows, const WallOptions& o) {
 
 }  // namespace
 
-struct Thd::Work {
+struct ThdSolver::Work {
   // One side of the film.
   struct Side {
     const WallOptions* options = nullptr;
@@ -389,11 +389,11 @@ void few_vectors(SNES snes) {
 
 }  // namespace
 
-Thd::Thd(const Rows& rows, ThdSetup setup, std::vector<double> thickness)
+ThdSolver::ThdSolver(const Rows& rows, ThdSetup setup, std::vector<double> thickness)
     : w_(std::make_unique<Work>(rows, std::move(setup), std::move(thickness))) {}
-Thd::~Thd() = default;
+ThdSolver::~ThdSolver() = default;
 
-ThdSolve Thd::solve() {
+ThdSolve ThdSolver::solve() {
   Work& w = *w_;
   if (!w.begun)
     if (const auto from = coarse_start(w.rows, w.setup, w.cold)) start(*from);
@@ -437,7 +437,7 @@ ThdSolve Thd::solve() {
   return w.cost;
 }
 
-std::vector<double> Thd::state() const {
+std::vector<double> ThdSolver::state() const {
   const Work& w = *w_;
   const auto l = static_cast<std::size_t>(w.rows.mesh().across),
              n = static_cast<std::size_t>(w.rows.mesh().nodes_around());
@@ -450,7 +450,7 @@ std::vector<double> Thd::state() const {
   }
   return out;
 }
-void Thd::start(const std::vector<double>& state) {
+void ThdSolver::start(const std::vector<double>& state) {
   Work& w = *w_;
   const auto l = static_cast<std::size_t>(w.rows.mesh().across),
              n = static_cast<std::size_t>(w.rows.mesh().nodes_around());
@@ -473,45 +473,45 @@ void Thd::start(const std::vector<double>& state) {
   w.begun = true;
   w.put_state();
 }
-const std::vector<double>& Thd::thickness() const {
+const std::vector<double>& ThdSolver::thickness() const {
   return w_->thickness;
 }
-const FilmFlow& Thd::flow() const {
+const FilmFlow& ThdSolver::flow() const {
   return w_->film;
 }
-const Flow& Thd::flows() const {
+const Flow& ThdSolver::flows() const {
   return w_->flow;
 }
-const std::vector<double>& Thd::temperature() const {
+const std::vector<double>& ThdSolver::temperature() const {
   return w_->temperature;
 }
-std::vector<double> Thd::mixed() {
+std::vector<double> ThdSolver::mixed() {
   return w_->energy->mixed(w_->film_temperature.get());
 }
-std::vector<double> Thd::wall_heat(bool journal) {
+std::vector<double> ThdSolver::wall_heat(bool journal) {
   return w_->energy->wall_heat(w_->film_temperature.get(), journal);
 }
-EnergyBudget Thd::budget() {
+EnergyBudget ThdSolver::budget() {
   return w_->energy->budget(w_->film_temperature.get());
 }
-const Solid* Thd::bush() const {
+const Solid* ThdSolver::bush() const {
   return w_->bush.solid ? &*w_->bush.solid : nullptr;
 }
-const Solid* Thd::journal() const {
+const Solid* ThdSolver::journal() const {
   return w_->journal.solid ? &*w_->journal.solid : nullptr;
 }
-Vec Thd::bush_temperature() const {
+Vec ThdSolver::bush_temperature() const {
   return w_->bush.temperature.get();
 }
-Vec Thd::journal_temperature() const {
+Vec ThdSolver::journal_temperature() const {
   return w_->journal.temperature.get();
 }
-std::vector<double> Thd::bush_surface() const {
+std::vector<double> ThdSolver::bush_surface() const {
   std::vector<double> out;
   for (std::size_t c = 0; c < w_->half.size(); ++c) out.push_back(w_->surface(w_->bush, c));
   return out;
 }
-std::vector<double> Thd::journal_surface() const {
+std::vector<double> ThdSolver::journal_surface() const {
   std::vector<double> out;
   for (std::size_t c = 0; c < w_->half.size(); ++c) out.push_back(w_->surface(w_->journal, c));
   return out;

@@ -38,13 +38,13 @@ struct ThdSolve {
 /// to the pressure and the flow, these to the film's temperature between its walls, and that to the solids. Rounds are
 /// joined by Anderson's method (SNES, options begin with `thd_`): where heat leaves the solids slowly they alone would
 /// hardly converge.
-class Thd {
+class ThdSolver {
 public:
   /// thickness m [r, n]. Collective. Throws core::Error, on all ranks, where the flow or a solid does.
-  Thd(const Rows& rows, ThdSetup setup, std::vector<double> thickness);
-  ~Thd();
-  Thd(const Thd&) = delete;
-  Thd& operator=(const Thd&) = delete;
+  ThdSolver(const Rows& rows, ThdSetup setup, std::vector<double> thickness);
+  ~ThdSolver();
+  ThdSolver(const ThdSolver&) = delete;
+  ThdSolver& operator=(const ThdSolver&) = delete;
 
   /// From the last state, or from that given to start(), on; at first from the ambient's temperature, on a large mesh
   /// (`-thd_coarse_start` cells) from the solution on one of half the intervals. Rounds are solved as far as the last
