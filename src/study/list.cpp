@@ -1,7 +1,7 @@
 #include "whirl/study/bearing/bearing_map.hpp"
 #include "whirl/study/bearing/dynamic_coefficients.hpp"
 #include "whirl/study/bearing/gas_bearing.hpp"
-#include "whirl/study/bearing/thd.hpp"
+#include "whirl/study/bearing/thd_study.hpp"
 #include "whirl/study/convergence/mesh_convergence.hpp"
 #include "whirl/study/cycle/cycle_branch.hpp"
 #include "whirl/study/equilibrium/alignment.hpp"
@@ -39,7 +39,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
           "one film of gas: load, flow and losses over eccentricity and under a load, meshes, design maps"),
       kind<DynamicCoefficients>(
           "one bearing: stiffness and damping of its film over speed and frequency, with tilts if wanted"),
-      kind<Thd>("one film with heat: pressure, temperature in film and solids, power and heat over the speed"),
+      kind<ThdStudy>("one film with heat: pressure, temperature in film and solids, power and heat over the speed"),
       kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
       kind<CriticalSpeedMap>("undamped critical speeds of the shaft over the stiffness of its bearings"),

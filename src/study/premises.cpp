@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "sense.hpp"
-#include "whirl/study/bearing/thd.hpp"
+#include "whirl/study/bearing/thd_study.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
 
 namespace whirl::study {
@@ -53,7 +53,7 @@ std::vector<double> thinnest_films(const io::Group& group, const system::Machine
 void judge_films(StudyResult& result, const system::Machine& machine, const Study& study) {
   constexpr std::array without_films{"alignment", "critical_speed_map"};
   if (!result.delivered || machine.bearings.empty() || std::ranges::count(without_films, study.kind()) > 0) return;
-  if (study.kind() == Thd::key) return;  // which has a film of its own
+  if (study.kind() == ThdStudy::key) return;  // which has a film of its own
   AskedFilms asked;
   for (const double speed : asked_speeds(machine, study)) asked.speed = std::max(asked.speed, std::abs(speed));
   if (asked.speed == 0) return;

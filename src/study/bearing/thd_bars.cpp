@@ -64,7 +64,7 @@ std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const fi
   const bool answered = has_answer(
       [&] {
         const SolvedFilm solved = solve_film(shared ? comm : MPI_COMM_SELF, options, geometry, speed, start);
-        ThdFilm& film = *solved.film;
+        ThdAtSpeed& film = *solved.film;
         if (!solved.settled) {
           core::NotConverged error(fmt::format("temperatures did not settle in {} rounds", film.cost().iterations));
           error.mark_agreed();
@@ -84,7 +84,7 @@ std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const fi
 
 // Names of values that have no limit on ever finer meshes. Near an orifice the gas flows with 1/r, r the distance: its
 // dissipation and work grow with ln(r), and so does what they change of the temperature and of the pressure there.
-std::set<std::string> without_limit(ThdFilm& film, const ThdOptions& options, const io::StudySummary& summary) {
+std::set<std::string> without_limit(ThdAtSpeed& film, const ThdOptions& options, const io::StudySummary& summary) {
   if (options.orifices.empty()) return {};
   std::set<std::string> out{"heat.dissipation", "heat.expansion"};
   for (const std::string& name : extremes_at_orifices(film)) out.insert(name);
@@ -111,7 +111,7 @@ std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double len
   return out;
 }
 
-void put_thd_bars(Context& context, ThdFilm& film, const ThdOptions& options, const film::Geometry& geometry,
+void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options, const film::Geometry& geometry,
                   double speed, const FilmStart& start, double energy_residual, Pieces& pieces) {
   const std::vector<std::array<int, 3>> meshes = thd_meshes(options, geometry.length, context.layout);
   io::StudySummary& summary = context.results.summary();

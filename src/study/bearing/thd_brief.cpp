@@ -4,7 +4,7 @@
 
 #include "study/brief.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/study/bearing/thd.hpp"
+#include "whirl/study/bearing/thd_study.hpp"
 
 namespace whirl::study {
 namespace {
@@ -39,7 +39,7 @@ io::BriefTable over_speed(const io::Group& budget, const std::string& unit) {
 
 }  // namespace
 
-io::Brief Thd::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
+io::Brief ThdStudy::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
   const Values v(result.summary);
   io::Brief brief;
   if (!v.get("power_loss")) return brief;

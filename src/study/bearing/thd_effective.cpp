@@ -56,7 +56,7 @@ std::optional<double> zero(const std::function<double(double)>& f, double a, dou
 
 }  // namespace
 
-void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, double ambient) {
+void put_effective(io::Group& group, io::StudySummary& summary, ThdAtSpeed& film, double ambient) {
   thermal::ThdSolver& thd = film.thd();
   const thermal::FlowReport wanted_report = thd.flow().report(thd.flows());
   const HeldValues wanted = values_of(wanted_report);

@@ -1,7 +1,7 @@
 #pragma once
 // The film of one temperature that comes closest to a film with heat, and how wrong it is.
 
-#include "study/bearing/thd_film.hpp"
+#include "study/bearing/thd_at_speed.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 
@@ -14,6 +14,6 @@ namespace whirl::study {
 /// A quantity that no temperature up to one span of the film's temperatures beyond them gives is absent, with a
 /// warning; one that is zero, as the power loss at rest, too. Collective. Cost: 10 to 30 flows of a film that is
 /// solved.
-void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, double ambient);
+void put_effective(io::Group& group, io::StudySummary& summary, ThdAtSpeed& film, double ambient);
 
 }  // namespace whirl::study

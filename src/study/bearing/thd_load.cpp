@@ -123,7 +123,7 @@ Pair left_of(MPI_Comm comm, const Pair& force, const Pair& load) {
 }
 
 // Difference quotients to the side of the wider gap.
-Matrix quotients(MPI_Comm comm, ThdFilm& film, double clearance, const Pair& load, std::vector<double> pressure) {
+Matrix quotients(MPI_Comm comm, ThdAtSpeed& film, double clearance, const Pair& load, std::vector<double> pressure) {
   const Pair& place = film.place();
   const double step = 1e-4 * (clearance - size(place));
   const Pair here = left_of(comm, film.force_beside({0, 0}, pressure), load);
@@ -146,7 +146,7 @@ public:
   Pair left(const Pair& place) override {
     Pair out{std::numeric_limits<double>::quiet_NaN(), 0};
     (void)has_answer([&] {
-      film_ = std::make_unique<ThdFilm>(comm_, at_place(options_, place), geometry_, speed_);
+      film_ = std::make_unique<ThdAtSpeed>(comm_, at_place(options_, place), geometry_, speed_);
       out = left_of(comm_, film_->force_beside({0, 0}, pressure_), load_);
     });
     return out;
@@ -159,7 +159,7 @@ private:
   const film::Geometry& geometry_;
   double speed_;
   Pair load_;
-  std::unique_ptr<ThdFilm> film_;
+  std::unique_ptr<ThdAtSpeed> film_;
   std::vector<double> pressure_;
 };
 
@@ -172,7 +172,7 @@ public:
   Pair left(const Pair& place) override {
     Pair out{std::numeric_limits<double>::quiet_NaN(), 0};
     (void)has_answer([&] {
-      auto film = std::make_unique<ThdFilm>(comm_, at_place(options_, place), geometry_, speed_);
+      auto film = std::make_unique<ThdAtSpeed>(comm_, at_place(options_, place), geometry_, speed_);
       if (!state_.empty()) film->thd().start(state_);
       settled_ = film->solve();
       const thermal::FlowReport report = film->thd().flow().report(film->thd().flows());
@@ -194,7 +194,7 @@ private:
   double speed_;
   Pair load_;
   std::vector<double> state_;
-  std::unique_ptr<ThdFilm> film_;
+  std::unique_ptr<ThdAtSpeed> film_;
   bool settled_ = false;
 };
 
@@ -209,7 +209,7 @@ SolvedFilm solve_film(MPI_Comm comm, const ThdOptions& options, const film::Geom
                       const FilmStart& start) {
   if (options.load.values.empty()) {
     SolvedFilm out;
-    out.film = std::make_unique<ThdFilm>(comm, options, geometry, speed);
+    out.film = std::make_unique<ThdAtSpeed>(comm, options, geometry, speed);
     if (!start.state.empty()) out.film->thd().start(start.state);
     out.settled = out.film->solve();
     return out;

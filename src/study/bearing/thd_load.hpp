@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "study/bearing/thd_film.hpp"
+#include "study/bearing/thd_at_speed.hpp"
 
 namespace whirl::study {
 
@@ -15,7 +15,7 @@ inline constexpr double load_tolerance = 1e-6;
 
 /// A film that is solved, and how many were to find the place of its journal.
 struct SolvedFilm {
-  std::unique_ptr<ThdFilm> film;
+  std::unique_ptr<ThdAtSpeed> film;
   int films = 1;
   bool settled = false;  ///< its temperatures
 };

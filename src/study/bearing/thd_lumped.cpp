@@ -9,7 +9,8 @@
 
 namespace whirl::study {
 
-void put_lumped(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options, const film::Geometry& geometry) {
+void put_lumped(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& options,
+                const film::Geometry& geometry) {
   if (film.is_gas()) return;
   thermal::ThdSolver& thd = film.thd();
   const double area = 2 * std::numbers::pi * geometry.radius * geometry.length;
@@ -19,7 +20,7 @@ void put_lumped(io::StudySummary& summary, ThdFilm& film, const ThdOptions& opti
   };
   const std::array<thermal::LumpedWall, 2> walls{wall(options.bush, thd.bush_surface()),
                                                  wall(options.journal, thd.journal_surface())};
-  ThdFilm::Isothermal at;
+  ThdAtSpeed::Isothermal at;
   std::vector<double> pressure;
   const auto told = [&](double temperature) {
     at = film.isothermal(temperature, pressure);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "study/bearing/thd_film.hpp"
-#include "whirl/study/bearing/thd.hpp"
+#include "study/bearing/thd_at_speed.hpp"
+#include "whirl/study/bearing/thd_study.hpp"
 #include "whirl/thermal/describe.hpp"
 
 namespace whirl::study {
@@ -68,12 +68,12 @@ void describe(deck::Description<ThdOptions>& d) {
   });
 }
 
-double Thd::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
+double ThdStudy::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
   const auto& [n, m, l] = options.cells;
   return 900.0 * n * m * l;  // measured: 730 to 860 from 1e6 cells on (docs/speed.md)
 }
 
-void Thd::validate(const system::Machine& machine, const deck::Report& report) const {
+void ThdStudy::validate(const system::Machine& machine, const deck::Report& report) const {
   using Fluid = thermal::FluidOptions;
   using Wall = thermal::WallOptions;
   const auto found =

@@ -2,7 +2,7 @@
 // The fluid and the clearance of a film over the temperature.
 
 #include "whirl/io/record.hpp"
-#include "whirl/study/bearing/thd.hpp"
+#include "whirl/study/bearing/thd_study.hpp"
 
 namespace whirl::study {
 

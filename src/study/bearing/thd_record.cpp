@@ -33,7 +33,7 @@ io::Dataset by_rows(const Rows& rows, io::Shape shape, std::vector<double> value
 }
 
 // Means across the film of what its fluid is.
-void put_fluid(io::Group& group, ThdFilm& film) {
+void put_fluid(io::Group& group, ThdAtSpeed& film) {
   const Rows& rows = film.rows();
   const auto n = static_cast<std::size_t>(rows.mesh().nodes_around()), r = static_cast<std::size_t>(rows.count()),
              l = static_cast<std::size_t>(rows.mesh().across);
@@ -55,7 +55,7 @@ void put_fluid(io::Group& group, ThdFilm& film) {
 }
 
 // What heats the film and where that goes, over the area of the film.
-void put_heat(io::Group& group, ThdFilm& film) {
+void put_heat(io::Group& group, ThdAtSpeed& film) {
   const Rows& rows = film.rows();
   const thermal::Mesh& mesh = rows.mesh();
   const auto n = static_cast<std::size_t>(mesh.nodes_around()), r = static_cast<std::size_t>(rows.count()),
@@ -79,7 +79,7 @@ void put_heat(io::Group& group, ThdFilm& film) {
 }
 
 // Where orifices are, at nodes of the mesh, and what they give.
-void put_orifices(io::Group& results, ThdFilm& film) {
+void put_orifices(io::Group& results, ThdAtSpeed& film) {
   const std::vector<thermal::Orifice>& orifices = film.orifices();
   if (orifices.empty()) return;
   const thermal::Mesh& mesh = film.rows().mesh();
@@ -106,7 +106,7 @@ void put_marks(io::Group& group, const Rows& rows, const char* name, const std::
 
 }  // namespace
 
-TemperatureNumbers temperature_numbers(const ThdFilm& film, const std::vector<double>& temperature) {
+TemperatureNumbers temperature_numbers(const ThdAtSpeed& film, const std::vector<double>& temperature) {
   const Rows& rows = film.rows();
   const thermal::Mesh& mesh = rows.mesh();
   double sums[2] = {}, ends[2] = {-1e300, -1e300};
@@ -132,7 +132,7 @@ TemperatureNumbers temperature_numbers(const ThdFilm& film, const std::vector<do
   return out;
 }
 
-SurfaceNumbers surface_numbers(const ThdFilm& film, const std::vector<double>& temperature) {
+SurfaceNumbers surface_numbers(const ThdAtSpeed& film, const std::vector<double>& temperature) {
   const Rows& rows = film.rows();
   const thermal::Mesh& mesh = rows.mesh();
   double sums[2] = {}, most = 0;
@@ -148,7 +148,7 @@ SurfaceNumbers surface_numbers(const ThdFilm& film, const std::vector<double>& t
   return {sums[0] / sums[1], most};
 }
 
-void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geometry) {
+void put_thd_fields(Context& context, ThdAtSpeed& film, const film::Geometry& geometry) {
   const Rows& rows = film.rows();
   const thermal::Mesh& mesh = rows.mesh();
   const auto n = static_cast<std::size_t>(mesh.nodes_around()), r = static_cast<std::size_t>(rows.count()),

@@ -1,7 +1,7 @@
 #pragma once
 // What a film with heat shows: numbers, and fields for pictures and ParaView.
 
-#include "study/bearing/thd_film.hpp"
+#include "study/bearing/thd_at_speed.hpp"
 
 namespace whirl::study {
 
@@ -10,15 +10,15 @@ struct TemperatureNumbers {
   double mean = 0, minimum = 0, maximum = 0, percentile_1 = 0, percentile_99 = 0;
 };
 /// Collective. Percentiles are right to a millionth of the span.
-[[nodiscard]] TemperatureNumbers temperature_numbers(const ThdFilm& film, const std::vector<double>& temperature);
+[[nodiscard]] TemperatureNumbers temperature_numbers(const ThdAtSpeed& film, const std::vector<double>& temperature);
 
 /// K, of a surface: its mean and its greatest temperature, of arrays [r, n]. Collective.
 struct SurfaceNumbers {
   double mean = 0, maximum = 0;
 };
-[[nodiscard]] SurfaceNumbers surface_numbers(const ThdFilm& film, const std::vector<double>& temperature);
+[[nodiscard]] SurfaceNumbers surface_numbers(const ThdAtSpeed& film, const std::vector<double>& temperature);
 
 /// Fields of film and solids into `group`, rows shared by the ranks, and their meshes. Collective.
-void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geometry);
+void put_thd_fields(Context& context, ThdAtSpeed& film, const film::Geometry& geometry);
 
 }  // namespace whirl::study

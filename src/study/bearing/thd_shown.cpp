@@ -17,7 +17,7 @@ constexpr double turn = 2 * std::numbers::pi;
 
 }  // namespace
 
-void show_film(Context& context, ThdFilm& film, const film::Geometry& geometry) {
+void show_film(Context& context, ThdAtSpeed& film, const film::Geometry& geometry) {
   const Rows& rows = film.rows();
   const thermal::Mesh& mesh = rows.mesh();
   const auto n = static_cast<std::size_t>(mesh.nodes_around()), l = static_cast<std::size_t>(mesh.across);
@@ -50,7 +50,7 @@ void show_film(Context& context, ThdFilm& film, const film::Geometry& geometry) 
   show("film surface unwrapped", "corners_surface_unwrapped", surface, [&](const io::Shape& c) { return flat(c, 0); });
 }
 
-void put_solid(Context& context, const ThdFilm& film, const thermal::Solid& solid, Vec temperature,
+void put_solid(Context& context, const ThdAtSpeed& film, const thermal::Solid& solid, Vec temperature,
                const std::string& name, const film::Geometry& geometry) {
   io::Group& group = context.results.group().child(name);
   const thermal::Cylinder& shape = solid.shape();

@@ -28,7 +28,7 @@ double change_of(MPI_Comm comm, const std::vector<double>& a, const std::vector<
 }
 
 // Of a gas what its motion leaves is dissipation and the work of pressure; a liquid keeps the dissipation alone.
-double dissipation(const ThdFilm& film, const thermal::FlowReport& report) {
+double dissipation(const ThdAtSpeed& film, const thermal::FlowReport& report) {
   return report.heat - (film.is_gas() ? report.expansion : 0);
 }
 
@@ -59,7 +59,7 @@ std::span<const ThdColumn> thd_columns() {
   return table;
 }
 
-std::vector<double> thd_row(ThdFilm& film, double speed) {
+std::vector<double> thd_row(ThdAtSpeed& film, double speed) {
   thermal::ThdSolver& thd = film.thd();
   const thermal::FlowReport report = thd.flow().report(thd.flows());
   const thermal::EnergyBudget budget = thd.budget();
@@ -85,14 +85,14 @@ std::vector<double> thd_row(ThdFilm& film, double speed) {
           film.attitude()};
 }
 
-void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options) {
+void put_thd_values(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& options) {
   thermal::ThdSolver& thd = film.thd();
   const thermal::FlowReport report = thd.flow().report(thd.flows());
   const thermal::EnergyBudget budget = thd.budget();
   const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
   const SurfaceNumbers at_bush = surface_numbers(film, thd.bush_surface()),
                        at_journal = surface_numbers(film, thd.journal_surface());
-  const ThdFilm::Isothermal isothermal = film.isothermal();
+  const ThdAtSpeed::Isothermal isothermal = film.isothermal();
   summary.set("load.x", -report.force[0], "N");
   summary.set("load.y", -report.force[1], "N");
   summary.set("load.isothermal.x", -isothermal.report.force[0], "N");
@@ -130,7 +130,7 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
     summary.set("clearance", surface_numbers(film, film.thickness()).mean, "m");
 }
 
-std::vector<std::string> extremes_at_orifices(ThdFilm& film) {
+std::vector<std::string> extremes_at_orifices(ThdAtSpeed& film) {
   const thermal::Rows& rows = film.rows();
   const int n = rows.mesh().nodes_around();
   std::vector<bool> beside(static_cast<std::size_t>(rows.count() * n), false);

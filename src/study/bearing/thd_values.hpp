@@ -17,10 +17,10 @@ struct ThdColumn {
 };
 [[nodiscard]] std::span<const ThdColumn> thd_columns();
 /// One number for each column, of a film that is solved. Collective.
-[[nodiscard]] std::vector<double> thd_row(ThdFilm& film, double speed);
+[[nodiscard]] std::vector<double> thd_row(ThdAtSpeed& film, double speed);
 
 /// All named values of a film that is solved, but for what rounding and iterations leave. Collective.
-void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options);
+void put_thd_values(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& options);
 
 /// Intervals around and along and layers across of the meshes that the error bars stand on, the deck's first, each with
 /// half of the cells of the one before it in every direction. The list ends before a mesh on which an orifice would
@@ -31,10 +31,10 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
 /// Solves the film on the coarser meshes at one speed, puts the error bars beside the values that `context` has in its
 /// summary, and all values over the mesh into its results. Collective.
 /// Values without a limit get none, and a warning that names them; meshes without an answer, too.
-void put_thd_bars(Context& context, ThdFilm& film, const ThdOptions& options, const film::Geometry& geometry,
+void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options, const film::Geometry& geometry,
                   double speed, const FilmStart& start, double energy_residual, Pieces& pieces);
 
 /// Names of those extremes of put_thd_values() that stand at an orifice or at a node beside one. Collective.
-[[nodiscard]] std::vector<std::string> extremes_at_orifices(ThdFilm& film);
+[[nodiscard]] std::vector<std::string> extremes_at_orifices(ThdAtSpeed& film);
 
 }  // namespace whirl::study

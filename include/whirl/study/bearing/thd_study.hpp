@@ -38,7 +38,7 @@ struct ThdOptions {
 [[nodiscard]] std::span<const deck::Name<ThdOptions::Cavitation>> names(ThdOptions::Cavitation);
 void describe(deck::Description<ThdOptions>& d);
 
-class Thd final : public StudyWith<ThdOptions> {
+class ThdStudy final : public StudyWith<ThdOptions> {
 public:
   static constexpr std::string_view key = "thd";
   [[nodiscard]] std::string_view kind() const override { return key; }

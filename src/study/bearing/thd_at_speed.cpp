@@ -1,4 +1,4 @@
-#include "study/bearing/thd_film.hpp"
+#include "study/bearing/thd_at_speed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +106,7 @@ std::optional<std::size_t> orifices_at_one_node(const ThdOptions& o, double leng
   return std::nullopt;
 }
 
-ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, double speed)
+ThdAtSpeed::ThdAtSpeed(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, double speed)
     : rows_(mesh_of(o, g), comm),
       flow_(flow_of(o, rows_.mesh(), speed)),
       supply_(supply_of(o, rows_, flow_)),
@@ -132,11 +132,11 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   thd_ = std::make_unique<thermal::ThdSolver>(rows_, std::move(setup), thickness_);
 }
 
-std::vector<int> ThdFilm::grooves() const {
+std::vector<int> ThdAtSpeed::grooves() const {
   return grooves_of(rows_, flow_, [](std::size_t) { return true; });
 }
 
-std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move, std::vector<double>& pressure) const {
+std::array<double, 2> ThdAtSpeed::force_beside(const std::array<double, 2>& move, std::vector<double>& pressure) const {
   const thermal::Mesh& mesh = rows_.mesh();
   std::vector<double> thickness = this->thickness();
   for (int j = rows_.begin(); j < rows_.end(); ++j)
@@ -152,12 +152,12 @@ std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move, s
   return {report.force[0], report.force[1]};
 }
 
-ThdFilm::Isothermal ThdFilm::isothermal() const {
+ThdAtSpeed::Isothermal ThdAtSpeed::isothermal() const {
   std::vector<double> pressure;
   return isothermal(ambient_, pressure);
 }
 
-ThdFilm::Isothermal ThdFilm::isothermal(double temperature, std::vector<double>& pressure, bool grown) const {
+ThdAtSpeed::Isothermal ThdAtSpeed::isothermal(double temperature, std::vector<double>& pressure, bool grown) const {
   const thermal::Mesh& mesh = rows_.mesh();
   const auto l = static_cast<std::size_t>(mesh.across);
   thermal::FilmFlow film(rows_, flow_, grown ? thickness() : thickness_);

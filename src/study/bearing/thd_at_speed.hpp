@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "whirl/study/bearing/thd.hpp"
+#include "whirl/study/bearing/thd_study.hpp"
 #include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::study {
@@ -18,10 +18,10 @@ namespace whirl::study {
 [[nodiscard]] std::optional<std::size_t> orifices_at_one_node(const ThdOptions& options, double length);
 
 /// A film at one speed.
-class ThdFilm {
+class ThdAtSpeed {
 public:
   /// Collective. Throws core::Error, on all ranks, where the mesh cannot hold what the options ask for.
-  ThdFilm(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry, double speed);
+  ThdAtSpeed(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry, double speed);
 
   [[nodiscard]] const thermal::Rows& rows() const { return rows_; }
   /// m [r, n].

@@ -1,4 +1,4 @@
-#include "whirl/study/bearing/thd.hpp"
+#include "whirl/study/bearing/thd_study.hpp"
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ struct Sweep {
     reasons.push_back(reason);
   }
 
-  [[nodiscard]] io::Group kept(const ThdFilm& film, std::vector<double> state) const {
+  [[nodiscard]] io::Group kept(const ThdAtSpeed& film, std::vector<double> state) const {
     io::Group out;
     std::vector<double> flat;
     for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
@@ -134,7 +134,7 @@ void warn_of_vortices(io::StudySummary& summary, const ThdOptions& options, cons
 
 }  // namespace
 
-StudyResult Thd::run(Context& context) {
+StudyResult ThdStudy::run(Context& context) {
   const std::size_t which = options.bearing.empty() ? 0 : *system::find_bearing(context.machine, options.bearing);
   const film::Geometry& geometry = *context.machine.bearings[which].geometry;
   auto& results = context.results;
@@ -147,7 +147,7 @@ StudyResult Thd::run(Context& context) {
   // Writes values, bars and fields of one speed.
   const auto put_film = [&](const SolvedFilm& solved, double speed, const std::array<double, 2>& place,
                             Pieces& pieces) {
-    ThdFilm& film = *solved.film;
+    ThdAtSpeed& film = *solved.film;
     put_thd_values(summary, film, options);
     const double residual = film.thd().budget().residual();
     put_thd_bars(context, film, options, geometry, speed, {place, {}}, residual, pieces);
@@ -178,7 +178,7 @@ StudyResult Thd::run(Context& context) {
     results.progress(fmt::format("speed {:.6g} rad/s", speed));
     FilmStart start;
     if (sweep.any() && last.empty())
-      last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
+      last = last_state(pieces.state(), ThdAtSpeed(context.comm, options, geometry, speed).rows());
     if (sweep.any()) start = {sweep.place(), last};
     if (std::string reason; !found(
             context.comm,
@@ -192,7 +192,7 @@ StudyResult Thd::run(Context& context) {
       continue;
     }
     sweep.reasons.emplace_back();
-    ThdFilm& film = *solved.film;
+    ThdAtSpeed& film = *solved.film;
     if (!solved.settled)
       sweep.unsettled.push_back(fmt::format("{:.6g} rad/s ({} rounds)", speed, film.cost().iterations));
     if (k + 1 == options.speeds.size()) break;
@@ -206,7 +206,7 @@ StudyResult Thd::run(Context& context) {
     bool there = solved.film != nullptr;
     if (!there) {
       // The last speeds have no film: the last one that there is, from where it was.
-      if (last.empty()) last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
+      if (last.empty()) last = last_state(pieces.state(), ThdAtSpeed(context.comm, options, geometry, speed).rows());
       there = found(
           context.comm,
           [&] {
