@@ -10,14 +10,14 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-void BandLu::resize(Index n, Index reach) {
+void PivotedBandLu::resize(Index n, Index reach) {
   reach_ = reach;
   rows_.setZero(3 * reach + 1, n);
   lower_.resize(reach, n);
   pivot_.resize(static_cast<std::size_t>(n));
 }
 
-void BandLu::factorise() {
+void PivotedBandLu::factorise() {
   const Index n = rows_.cols();
   for (Index k = 0; k < n; ++k) {
     const Index last = std::min(n - 1, k + reach_), right = std::min(n - 1, k + 2 * reach_);
@@ -36,7 +36,7 @@ void BandLu::factorise() {
   }
 }
 
-void BandLu::solve(double* x) const {
+void PivotedBandLu::solve(double* x) const {
   const Index n = rows_.cols();
   for (Index k = 0; k < n; ++k) {
     std::swap(x[k], x[pivot_[static_cast<std::size_t>(k)]]);

@@ -10,7 +10,7 @@
 namespace whirl::solve {
 
 /// LU of a band matrix with exchanges of rows: `reach` diagonals on either side of the main one.
-class BandLu {
+class PivotedBandLu {
 public:
   /// Zero [n x n].
   void resize(Eigen::Index n, Eigen::Index reach);
@@ -39,7 +39,7 @@ public:
 
 private:
   struct Part {
-    BandLu band;
+    PivotedBandLu band;
     Eigen::MatrixXd response;  // B^-1 U: of the seen inputs, then of the last states [interior x ...]
     Eigen::MatrixXd forces;    // own P^T [interior x forces]
     Eigen::MatrixXd ends;      // own D^T of the last states' rows [interior x reach]
