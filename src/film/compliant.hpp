@@ -104,7 +104,7 @@ protected:
   }
   /// For reports, which know no rates: those at which g(motion, s, s') = 0, which is linear in them, if the force
   /// depends on them.
-  [[nodiscard]] std::vector<double> settled_rates(const JournalMotion& motion, std::span<const double> states);
+  [[nodiscard]] std::vector<double> balanced_rates(const JournalMotion& motion, std::span<const double> states);
   /// Sizes for the rows of a share; derivatives only if they are wanted.
   void resize(const Share& share, Need need, StateResponse& response) const;
   /// Of an empty film on a mesh of `along` nodes along it: theta, z, pressure and thickness.

@@ -84,7 +84,7 @@ CompliantModel::CompliantModel(const Geometry& geometry, const Compliant& option
       neighbours_(options.differences),
       ring_(options.cells[0], options.quadrature) {}
 
-std::vector<double> CompliantModel::settled_rates(const JournalMotion& motion, std::span<const double> states) {
+std::vector<double> CompliantModel::balanced_rates(const JournalMotion& motion, std::span<const double> states) {
   const auto n = static_cast<Eigen::Index>(states.size());
   std::vector<double> rates(states.size(), 0.0);
   if (constant_rates()) return rates;

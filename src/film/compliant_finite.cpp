@@ -52,7 +52,7 @@ void FiniteFilm::set(const JournalMotion& motion, Lines part, std::span<const do
 // For reports.
 void FiniteFilm::set_settled(const JournalMotion& motion, std::span<const double> states) {
   const Lines all{0, ring_.nodes()};
-  const std::vector<double> rates = settled_rates(motion, states);
+  const std::vector<double> rates = balanced_rates(motion, states);
   set(motion, all, seen_of(whole(), states), seen_of(whole(), rates));
 }
 

@@ -26,7 +26,7 @@ void CompliantFilm::resample(const JournalMotion& motion, const Film& other, std
 // Side flow of a short film from its parabola, (H^3/12 mu) 6 p/L out of each side; friction mu U/H on the whole
 // circumference and half the pressure flow, -U/(2 R) int p dH/dtheta.
 FilmReport CompliantFilm::summary(const JournalMotion& motion, std::span<const double> states) {
-  set(motion, states, settled_rates(motion, states));
+  set(motion, states, balanced_rates(motion, states));
   FilmReport s;
   s.min_thickness = g_.clearance * least_;
   const double U = motion.speed * g_.radius, *P = around(carried_.p), *H = around(h_);
@@ -41,7 +41,7 @@ FilmReport CompliantFilm::summary(const JournalMotion& motion, std::span<const d
 }
 
 std::vector<NodalField> CompliantFilm::fields(const JournalMotion& motion, std::span<const double> states) {
-  set(motion, states, settled_rates(motion, states));
+  set(motion, states, balanced_rates(motion, states));
   auto [theta, z, pressure, h] = empty_fields(long_ ? 2 : 17);
   for (int k = 0; k <= n_; ++k)
     for (const double place : z.values) {

@@ -90,7 +90,7 @@ solve::BranchMemory read_memory(const io::Group& group, Vec like) {
   return memory;
 }
 
-void write_restart(io::Group& group, const solve::Settled& at, Vec u, Vec tangent) {
+void write_restart(io::Group& group, const solve::ResumePoint& at, Vec u, Vec tangent) {
   write_point(group.child("point"), at.point);
   put_unknowns(group, "u", u, false);
   put_unknowns(group, "tangent", tangent, false);

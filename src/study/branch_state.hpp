@@ -9,7 +9,7 @@ namespace whirl::study {
 
 /// Point, unknowns, tangent, next step and memory; unknowns are in global order and whole, so that the number of ranks
 /// may change.
-void write_restart(io::Group& group, const solve::Settled& at, Vec u, Vec tangent);
+void write_restart(io::Group& group, const solve::ResumePoint& at, Vec u, Vec tangent);
 /// `like` has the layout of the unknowns.
 [[nodiscard]] solve::Restart read_restart(const io::Group& group, Vec like);
 /// The memory alone, its unknowns as put_vector() has them.

@@ -151,7 +151,7 @@ TEST(Liner, DampingDoesNotMoveAFilmAtRest) {
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * scale_of(*damped));
     EXPECT_NEAR(damped->summary(m, a).max_pressure, plain->summary(m, b).max_pressure,
                 1e-8 * plain->summary(m, b).max_pressure);
-    // A journal that moves: the settled rates satisfy the equation and carry another pressure than the spring.
+    // A journal that moves: the balanced rates satisfy the equation and carry another pressure than the spring.
     const JournalMotion moving = motion(cylinder(), {ex, ey, 0.0, 0.0}, {0.1, -0.1, 0.0, 0.0}, kSpeed);
     EXPECT_GT(std::abs(damped->summary(moving, a).max_pressure / plain->summary(moving, b).max_pressure - 1.0), 1e-3);
     EXPECT_FALSE(damped->constant_rates());

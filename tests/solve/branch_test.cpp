@@ -165,7 +165,7 @@ TEST(Branch, RestartGoesOnWhereItWas) {
     auto callbacks = test::recording(problem, r);
     callbacks.cycles = true;
     callbacks.stability = [&](Vec) { return test::multipliers(problem); };
-    callbacks.checkpoint = [&](const solve::Settled& at, Vec u, Vec t) {
+    callbacks.checkpoint = [&](const solve::ResumePoint& at, Vec u, Vec t) {
       if (at.point.index != stop_at) return true;
       saved = {problem.gather(u), problem.gather(t), at.next_step, at.point};
       return false;
@@ -215,7 +215,7 @@ TEST(Branch, FoldOfASelfExcitedCycle) {
         std::min_element(mu.begin(), mu.end(), [](auto a, auto b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
     return solve::make_stability(std::move(mu), [](auto z) { return std::abs(z) - 1; });
   };
-  callbacks.checkpoint = [&](const solve::Settled& at, Vec u, Vec) {
+  callbacks.checkpoint = [&](const solve::ResumePoint& at, Vec u, Vec) {
     const solve::BranchPoint& p = at.point;
     const solve::Cycle c = problem.gather(u);
     const double q = c.x.col(3).squaredNorm();

@@ -131,7 +131,7 @@ Curve curve(solve::ExtendedProblem& branch, solve::Condition& condition, core::V
     c.points.push_back({problem.first_parameter(whole), point.parameter, problem.inner(whole)});
     problem.update();
   };
-  callbacks.checkpoint = [&](const solve::Settled&, Vec whole, Vec) {
+  callbacks.checkpoint = [&](const solve::ResumePoint&, Vec whole, Vec) {
     if (f.moved) f.moved(problem.branch_part(whole).get());
     return c.points.size() < 200;
   };

@@ -81,7 +81,7 @@ struct Branch {
       return solve::refine(problem, e, u, t, options.newton);
     };
     callbacks.on_suspicion = [&](const solve::Suspicion& x) { found.suspected.push_back(x); };
-    callbacks.checkpoint = [&](const solve::Settled& at, Vec u, Vec t) {
+    callbacks.checkpoint = [&](const solve::ResumePoint& at, Vec u, Vec t) {
       replay_log.begin();
       saved = {solve::Restart{copy(u), copy(t), at.next_step, at.point, copy(*at.memory)},
                {},

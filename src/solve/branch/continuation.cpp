@@ -93,7 +93,7 @@ bool Follower::advance(const State& from, double ds, State& to, NewtonResult& re
 // The solution carried over is corrected at right angles to the branch: near a fold there may be none at its parameter.
 // If the new branch has its slope or its unstable values on the other side there, an event lies within the change of
 // the discretisation: behind this point if it has not been passed yet, else ahead, where it has been reported already.
-bool Follower::settle(State& here, NewtonResult& result) {
+bool Follower::correct_on_new_mesh(State& here, NewtonResult& result) {
   core::Vector along = copy(here.tangent.get()), row = core::duplicate(here.u.get());
   check(VecScale(along.get(), 1 / std::sqrt(inner(problem_, along.get(), along.get()))));
   weighted_row(problem_, along.get(), row.get());
@@ -147,8 +147,8 @@ std::optional<BranchItem> Follower::next() {
     if (stage_ == Stage::ended) return std::nullopt;
     if (stage_ == Stage::start)
       begin();
-    else if (stage_ == Stage::settle)
-      settle_here();
+    else if (stage_ == Stage::adapt)
+      adapt_here();
     else
       step();
   }
@@ -173,14 +173,14 @@ void Follower::begin() {
   here_.point.newton_iterations = first.iterations;
   inspect(here_, nullptr);
   accept_point();
-  found_.push_back({{Settled{here_.point, ds_, &memory_}, here_.u.get(), here_.tangent.get()}, {}});
+  found_.push_back({{ResumePoint{here_.point, ds_, &memory_}, here_.u.get(), here_.tangent.get()}, {}});
   stage_ = Stage::renew;
   at_start_ = true;
 }
 
 // One step, with halved lengths where it fails, and what lies on it.
 void Follower::step() {
-  // Whoever had the settled point may have renewed its tangent.
+  // Whoever had the resume point may have renewed its tangent.
   if (std::exchange(at_start_, false) && questions_.limit && !(questions_.limit(here_.u.get()) > 0)) {
     finish(questions_.why(here_.u.get()), false);
     end_.limited = true;
@@ -252,7 +252,7 @@ void Follower::step() {
   ds_ = rounded(std::min(options_.max_step, ds_ * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
   ds_ = std::max(ds_, options_.min_step);
   accept_point();
-  stage_ = Stage::settle;
+  stage_ = Stage::adapt;
   if (limit.limited) {
     finish(questions_.why(here_.u.get()), false);
     end_.limited = true;
@@ -260,15 +260,16 @@ void Follower::step() {
   }
 }
 
-void Follower::settle_here() {
+void Follower::adapt_here() {
   // What is held back lies on this mesh.
   if (options_.adapt_every > 0 && here_.point.index % options_.adapt_every == 0 && !memory_.held &&
       problem_.adapt(here_.u, here_.tangent)) {
     forget_points();
     NewtonResult again;
-    if (!settle(here_, again)) return finish(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
+    if (!correct_on_new_mesh(here_, again))
+      return finish(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
   }
-  found_.push_back({{Settled{here_.point, ds_, &memory_}, here_.u.get(), here_.tangent.get()}, {}});
+  found_.push_back({{ResumePoint{here_.point, ds_, &memory_}, here_.u.get(), here_.tangent.get()}, {}});
   stage_ = Stage::renew;
 }
 
@@ -334,8 +335,8 @@ BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const Continua
       callbacks.on_zero(*zero, item->u);
     } else if (const auto* suspicion = std::get_if<Suspicion>(&item->what)) {
       if (callbacks.on_suspicion) callbacks.on_suspicion(*suspicion);
-    } else if (const auto* settled = std::get_if<Settled>(&item->what); callbacks.checkpoint) {
-      if (!callbacks.checkpoint(*settled, item->u, item->tangent)) branch.stop("stopped on request");
+    } else if (const auto* resume = std::get_if<ResumePoint>(&item->what); callbacks.checkpoint) {
+      if (!callbacks.checkpoint(*resume, item->u, item->tangent)) branch.stop("stopped on request");
     }
   }
   return branch.end();

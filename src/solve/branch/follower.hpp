@@ -30,10 +30,10 @@ public:
 
 private:
   // Work is done in stages, each of which leaves items; the next one begins when these were taken.
-  enum class Stage { start, advance, settle, renew, ended };
+  enum class Stage { start, advance, adapt, renew, ended };
   void begin();
   void step();
-  void settle_here();
+  void adapt_here();
   void meet(LocatedEvent found, core::Vector u);
   // Their mesh is gone, or they have nothing to compare with.
   void forget_points() { memory_.before = {}, memory_.earlier.reset(); }
@@ -69,7 +69,7 @@ private:
   // Whether a branch that natural continuation cannot follow turns back just behind `here`: the fold is then reported.
   bool turns_back(const State& here);
   // After a change of the discretisation: the point near `here` on the branch of the new one, and what that changed.
-  bool settle(State& here, NewtonResult& result);
+  bool correct_on_new_mesh(State& here, NewtonResult& result);
 
   // All that lies between two points. With the points before a (null: none on this mesh), also what the count of
   // unstable values at a and b does not show.

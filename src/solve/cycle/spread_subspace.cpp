@@ -94,9 +94,9 @@ std::vector<std::complex<double>> SpreadCycle::find_subspace() {
 }
 
 // Multipliers by orthogonal iteration on V and two generic vectors, which would show a multiplier that V does not know;
-// those below the radius, which nothing depends on, to six digits. Empty if this does not settle at once, because there
-// are multipliers just below the radius, or if their number has changed: then they are to be found anew.
-std::vector<std::complex<double>> SpreadCycle::settled_multipliers() {
+// those below the radius, which nothing depends on, to six digits. Empty if this does not converge at once, because
+// there are multipliers just below the radius, or if their number has changed: then they are to be found anew.
+std::vector<std::complex<double>> SpreadCycle::refined_multipliers() {
   constexpr Index probes = 2;
   constexpr int most = 2;
   constexpr double below_radius = 1e-6, slow = 1e-2;
@@ -126,16 +126,16 @@ std::vector<std::complex<double>> SpreadCycle::settled_multipliers() {
     const Eigen::MatrixXcd defects = (y - x * projected) * modes.vectors;
     MatrixXd sizes = defects.colwise().squaredNorm().transpose();
     sum(sizes);
-    bool settled = true;
+    bool converged = true;
     std::vector<std::complex<double>> values;
     for (Index c = 0; c < x.cols(); ++c) {
       values.push_back(modes.values(c));
       const double size = std::abs(values.back());
-      settled =
-          settled && std::sqrt(sizes(c)) <= (size > radius_ ? options_.multiplier_tolerance * size : below_radius);
+      converged =
+          converged && std::sqrt(sizes(c)) <= (size > radius_ ? options_.multiplier_tolerance * size : below_radius);
     }
     std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
-    if (settled) {
+    if (converged) {
       const auto large = std::count_if(values.begin(), values.end(), [&](auto z) { return std::abs(z) > radius_; });
       if (large != p) return {};
       if (k == 0) return values;
@@ -153,7 +153,7 @@ std::vector<std::complex<double>> SpreadCycle::settled_multipliers() {
 }
 
 std::vector<std::complex<double>> SpreadCycle::multipliers() {
-  auto values = settled_multipliers();
+  auto values = refined_multipliers();
   if (!values.empty()) return values;
   values = find_subspace();
   find_image();

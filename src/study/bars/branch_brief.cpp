@@ -76,7 +76,7 @@ bool grows(const JoinedStretch& s) {
   return s.stability == "unstable";
 }
 
-bool settles(const JoinedStretch& s) {
+bool dies_out(const JoinedStretch& s) {
   return s.stability == "stable" || s.stability == "undamped";
 }
 
@@ -155,7 +155,7 @@ std::vector<std::string> on_stability(const io::StudySummary& s, const std::vect
     return {fmt::format("{}is unstable from the start of the branch, {}.", subject, span(all[0], unit)), undetermined,
             later(all, 1, unit)};
   std::size_t k = 1;
-  while (k < all.size() && !(grows(all[k]) && settles(all[k - 1]))) ++k;
+  while (k < all.size() && !(grows(all[k]) && dies_out(all[k - 1]))) ++k;
   if (k == all.size()) return {fmt::format("{}is {}.", subject, in_turn(all, 3, unit)), later(all, 3, unit)};
   return {as_sentence(subject + loss(s, all[k - 1], all[k], unit)), undetermined, later(all, k + 1, unit)};
 }

@@ -65,7 +65,7 @@ std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const fi
       [&] {
         const SolvedFilm solved = solve_film(shared ? comm : MPI_COMM_SELF, options, geometry, speed, start);
         ThdAtSpeed& film = *solved.film;
-        if (!solved.settled) {
+        if (!solved.converged) {
           core::NotConverged error(fmt::format("temperatures did not settle in {} rounds", film.cost().iterations));
           error.mark_agreed();
           throw error;

@@ -174,7 +174,7 @@ public:
     (void)has_answer([&] {
       auto film = std::make_unique<ThdAtSpeed>(comm_, at_place(options_, place), geometry_, speed_);
       if (!state_.empty()) film->thd().start(state_);
-      settled_ = film->solve();
+      converged_ = film->solve();
       const thermal::FlowReport report = film->thd().flow().report(film->thd().flows());
       out = left_of(comm_, {report.force[0], report.force[1]}, load_);
       state_ = film->thd().state();
@@ -185,7 +185,7 @@ public:
   Matrix slope() override {
     return quotients(comm_, *film_, geometry_.clearance, load_, film_->thd().flow().pressure());
   }
-  SolvedFilm result() { return {std::move(film_), films(), settled_}; }
+  SolvedFilm result() { return {std::move(film_), films(), converged_}; }
 
 private:
   MPI_Comm comm_;
@@ -195,7 +195,7 @@ private:
   Pair load_;
   std::vector<double> state_;
   std::unique_ptr<ThdAtSpeed> film_;
-  bool settled_ = false;
+  bool converged_ = false;
 };
 
 }  // namespace
@@ -211,7 +211,7 @@ SolvedFilm solve_film(MPI_Comm comm, const ThdOptions& options, const film::Geom
     SolvedFilm out;
     out.film = std::make_unique<ThdAtSpeed>(comm, options, geometry, speed);
     if (!start.state.empty()) out.film->thd().start(start.state);
-    out.settled = out.film->solve();
+    out.converged = out.film->solve();
     return out;
   }
   const Pair load = load_of(options);

@@ -17,7 +17,7 @@ inline constexpr double load_tolerance = 1e-6;
 struct SolvedFilm {
   std::unique_ptr<ThdAtSpeed> film;
   int films = 1;
-  bool settled = false;  ///< its temperatures
+  bool converged = false;  ///< its temperatures
 };
 
 /// Where a search begins: the place of the journal in clearances, else the place of a film of one temperature under the

@@ -193,7 +193,7 @@ StudyResult ThdStudy::run(Context& context) {
     }
     sweep.reasons.emplace_back();
     ThdAtSpeed& film = *solved.film;
-    if (!solved.settled)
+    if (!solved.converged)
       sweep.unsettled.push_back(fmt::format("{:.6g} rad/s ({} rounds)", speed, film.cost().iterations));
     if (k + 1 == options.speeds.size()) break;
     last = film.thd().state();

@@ -57,7 +57,7 @@ void CycleFollower::renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent) {
   }
 }
 
-void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
+void CycleFollower::save(const solve::ResumePoint& at, Vec u, Vec tangent) {
   const solve::Cycle cycle = problem_->gather(u);
   // What a resumed branch reads is rounded once more. This one goes on from there as well, so that both are the same.
   const auto round = [this](Vec v) {

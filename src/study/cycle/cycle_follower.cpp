@@ -286,7 +286,7 @@ StudyResult CycleFollower::run() {
     context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
   };
   std::size_t suspicions = context_.results.summary().suspected.size();  // up to the last point
-  callbacks.checkpoint = [this, &suspicions](const solve::Settled& at, Vec v, Vec t) {
+  callbacks.checkpoint = [this, &suspicions](const solve::ResumePoint& at, Vec v, Vec t) {
     save(at, v, t);
     if (!returned_) suspicions = context_.results.summary().suspected.size();
     return !returned_;

@@ -224,7 +224,7 @@ private:
   void relocate_fold(core::Vector& u, Relocated& out);
   void renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent);
   void close_at_flip(double landed);
-  void save(const solve::Settled& at, Vec u, Vec tangent);
+  void save(const solve::ResumePoint& at, Vec u, Vec tangent);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
   Context& context_;

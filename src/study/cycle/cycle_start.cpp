@@ -70,7 +70,7 @@ solve::Restart CycleFollower::start_at_hopf() {
     parameter = found.parameter * scale_;
     hopf = found;
   };
-  callbacks.checkpoint = [&](const solve::Settled&, Vec, Vec) { return !at_hopf; };
+  callbacks.checkpoint = [&](const solve::ResumePoint&, Vec, Vec) { return !at_hopf; };
   const auto search = [&] {
     solve::ContinuationOptions o = continuation_;
     o.initial_step = o.max_step;

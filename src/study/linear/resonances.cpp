@@ -15,7 +15,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double near_enough = 1.5;   // widths: a resonance between two speeds is seen with 0.8 of its height
-constexpr double settled_part = 0.1;  // of the width
+constexpr double located_part = 0.1;  // of the width
 constexpr double top_within = 2;      // widths from a resonance to its peak
 constexpr int most_looks = 4;         // at a modulus between three speeds
 constexpr double meets_within = 2;    // widths from the modulus to the speed
@@ -42,8 +42,8 @@ struct Bracket {
   [[nodiscard]] bool left() const { return std::abs(f_a) <= std::abs(f_b); }
   [[nodiscard]] double secant() const { return a + f_a / (f_a - f_b) * (b - a); }
   [[nodiscard]] double width() const { return left() ? w_a : w_b; }
-  [[nodiscard]] bool settled() const {
-    return std::min({std::abs(f_a), std::abs(f_b), b - a}) <= settled_part * width();
+  [[nodiscard]] bool located() const {
+    return std::min({std::abs(f_a), std::abs(f_b), b - a}) <= located_part * width();
   }
   // Not so where the spectrum jumps, as one does that lacks eigenvalues: there the bracket has a change of sign alone.
   [[nodiscard]] bool meets() const { return std::min(std::abs(f_a), std::abs(f_b)) <= meets_within * width(); }
@@ -199,7 +199,7 @@ HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& co
   for (int pass = 0;; ++pass) {
     std::vector<double> ask;
     for (const Bracket& x : brackets_of(known, search)) {
-      if (x.settled() || seen(x, computed, tops)) continue;
+      if (x.located() || seen(x, computed, tops)) continue;
       // Secants of a modulus that bends or jumps may move one end only: each third step halves what they leave.
       const bool halve = pass % 3 == 2;
       const double secant = x.secant();
@@ -225,7 +225,7 @@ HiddenResonances hidden_resonances(Spectra& known, const std::vector<double>& co
     if (seen(x, computed, tops)) continue;
     const Complex lambda = x.left() ? x.at_a : x.at_b;
     if (!has_peak(lambda)) continue;
-    if (!x.settled()) {
+    if (!x.located()) {
       out.gave_up = true;
       continue;
     }

@@ -167,7 +167,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
     return !speeds.empty();
   };
   // Until no top of any place asks for more.
-  const auto settle = [&](int passes, const auto& ask) {
+  const auto add_rounds = [&](int passes, const auto& ask) {
     for (int pass = 0; pass < passes; ++pass) {
       std::vector<double> speeds;
       for (const Place& place : places) {
@@ -180,8 +180,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // Then speeds around the two places where each peak has fallen to 0.707 of its height; these may show a higher top.
   const auto refine = [&] {
     for (int round = 0; round < 3; ++round) {
-      settle(10, ask_for_top);
-      settle(10, [](const ResponseCurve& of, std::size_t k, int, std::vector<double>& speeds) {
+      add_rounds(10, ask_for_top);
+      add_rounds(10, [](const ResponseCurve& of, std::size_t k, int, std::vector<double>& speeds) {
         ask_for_width(of, k, speeds);
       });
     }

@@ -281,7 +281,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
                                           options_.second.path, deck::from_si(last_.second, options_.second.range.unit),
                                           options_.second.range.unit, point.step, context_.results.seconds()));
   };
-  callbacks.checkpoint = [&](const solve::Settled& at, Vec whole, Vec tangent) {
+  callbacks.checkpoint = [&](const solve::ResumePoint& at, Vec whole, Vec tangent) {
     if (cycles_ && cycles_->options().autonomous)
       cycles_->set_phase_reference(cycles_->gather(problem_->branch_part(whole).get()));
     const double low = std::min(first_range_.from, first_range_.to),

@@ -46,7 +46,7 @@ solve::Restart LocusFollower::restore(const io::Group& state, Vec like) {
   return read_restart(state.group("restart"), like);
 }
 
-void LocusFollower::save(const solve::Settled& at, Vec whole, Vec tangent) {
+void LocusFollower::save(const solve::ResumePoint& at, Vec whole, Vec tangent) {
   if (!pieces_->state_due()) return;
   io::Group state;
   write_cycle(state.child("cycle"), point_at(whole).cycle);

@@ -133,7 +133,7 @@ private:
   // What the checkpoint of an interrupted run holds of the present direction.
   [[nodiscard]] std::optional<io::Group> interrupted() const;
   [[nodiscard]] solve::Restart restore(const io::Group& state, Vec like);
-  void save(const solve::Settled& at, Vec whole, Vec tangent);
+  void save(const solve::ResumePoint& at, Vec whole, Vec tangent);
 
   Context& context_;
   const LocusOptions& options_;

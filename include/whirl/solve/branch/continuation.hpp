@@ -167,7 +167,7 @@ struct Restart {
 };
 
 /// A point from which the branch can be taken up again: after its discretisation was adapted.
-struct Settled {
+struct ResumePoint {
   BranchPoint point;
   double next_step = 0;
   const BranchMemory* memory = nullptr;  ///< the branch's own
@@ -175,9 +175,9 @@ struct Settled {
 
 /// What is met on the way along a branch.
 struct BranchItem {
-  std::variant<BranchPoint, LocatedEvent, LocatedZero, Suspicion, Settled> what;
-  Vec u = nullptr;        ///< the solution there; null for suspicions; that of a settled point may be rounded
-  Vec tangent = nullptr;  ///< of settled points; may be changed
+  std::variant<BranchPoint, LocatedEvent, LocatedZero, Suspicion, ResumePoint> what;
+  Vec u = nullptr;        ///< the solution there; null for suspicions; that of a resume point may be rounded
+  Vec tangent = nullptr;  ///< of resume points; may be changed
 };
 
 struct BranchEnd {
@@ -197,7 +197,7 @@ class Follower;
 ///     branch.end().reason ...
 ///
 /// Of each step first what lies on it (events, zeros, suspicions), then its point, then what an adaptation of the
-/// discretisation passed over, then the settled point. Work is done in next() alone, so that whoever stops asking stops
+/// discretisation passed over, then the resume point. Work is done in next() alone, so that whoever stops asking stops
 /// the continuation. Decisions use integer counts and rounded values only: any number of ranks takes the same steps.
 /// Collective on problem.comm(); `problem` must outlive it.
 class BranchIterator {
@@ -228,7 +228,7 @@ struct BranchCallbacks : BranchQuestions {
   /// Where events may have been missed.
   std::function<void(const Suspicion&)> on_suspicion;
   /// After each accepted point, with all that a restart needs; return false to stop.
-  std::function<bool(const Settled&, Vec u, Vec tangent)> checkpoint;
+  std::function<bool(const ResumePoint&, Vec u, Vec tangent)> checkpoint;
 };
 
 /// Calls back for every item of a BranchIterator. Collective.

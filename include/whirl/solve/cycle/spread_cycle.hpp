@@ -142,7 +142,7 @@ private:
   Eigen::MatrixXd picard(const Eigen::MatrixXd& right, Eigen::MatrixXd& image, Eigen::MatrixXd& added) const;
   void orthonormalise(Eigen::MatrixXd& v, Eigen::Index from) const;
   std::vector<std::complex<double>> find_subspace();
-  std::vector<std::complex<double>> settled_multipliers();
+  std::vector<std::complex<double>> refined_multipliers();
   void find_image();
   void prepare();
 
