@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "whirl/deck/units.hpp"
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {
 namespace {
 
-void add_groups(io::Bifurcation& b, const std::optional<system::Groups>& groups, double speed) {
+void add_groups(io::Bifurcation& b, const std::optional<system::DimensionlessGroups>& groups, double speed) {
   if (!groups) return;
   b.more["nondimensional_speed"] = speed / groups->speed_scale;
   b.more["nondimensional_load"] = groups->load;
@@ -76,7 +76,8 @@ io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std
   if (path == "speed")
     add_groups(b, system.groups(), si);
   else if (system::is_rotor(machine))
-    add_groups(b, system::groups_of(system::train_of(with_parameter(machine, path, si), unbalance)), system.speed());
+    add_groups(b, system::dimensionless_groups(system::train_of(with_parameter(machine, path, si), unbalance)),
+               system.speed());
   return b;
 }
 

@@ -286,10 +286,10 @@ std::string number_text(double value_si, const std::string& unit) {
 }
 
 void put_groups(io::StudySummary& summary, const system::Train& train) {
-  put_groups(summary, system::groups_of(train));
+  put_groups(summary, system::dimensionless_groups(train));
 }
 
-void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& groups) {
+void put_groups(io::StudySummary& summary, const std::optional<system::DimensionlessGroups>& groups) {
   if (!groups) return;
   summary.set("nondimensional.speed_scale", groups->speed_scale, "rad/s");
   summary.set("nondimensional.load", groups->load, "1");

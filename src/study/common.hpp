@@ -84,7 +84,7 @@ void put_places(io::Group& group, const system::Machine& machine, const system::
 
 /// The nondimensional groups of a rigid rotor in equal bearings, as nondimensional.*; nothing for other machines.
 void put_groups(io::StudySummary& summary, const system::Train& train);
-void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& groups);
+void put_groups(io::StudySummary& summary, const std::optional<system::DimensionlessGroups>& groups);
 
 /// The same word of the solver.
 [[nodiscard]] inline solve::Continuation kind_of(Following f) {

@@ -24,12 +24,12 @@ Findings::Findings(MPI_Comm comm, const std::string& name, const std::string& ki
 }
 
 Findings::~Findings() {
-  for (auto& [count, g] : groups_)
+  for (auto& [count, g] : rank_groups_)
     for (MPI_Comm* c : {&g.space, &g.time}) MPI_Comm_free(c);
 }
 
-Findings::Groups Findings::groups(int count) {
-  const auto [at, missing] = groups_.try_emplace(count);
+Findings::RankGroups Findings::rank_groups(int count) {
+  const auto [at, missing] = rank_groups_.try_emplace(count);
   if (missing) {
     const int each = core::size_of(comm_) / count;
     MPI_Comm_split(comm_, rank_ / each, rank_, &at->second.space);

@@ -67,10 +67,10 @@ public:
 
   /// Communicators of `count` groups of as many neighbouring ranks each: this rank's group, and the ranks that have its
   /// place in the others. They live as long as this. Collective.
-  struct Groups {
+  struct RankGroups {
     MPI_Comm space, time;
   };
-  [[nodiscard]] Groups groups(int count);
+  [[nodiscard]] RankGroups rank_groups(int count);
 
   ~Findings();
   Findings(const Findings&) = delete;
@@ -78,7 +78,7 @@ public:
 
 private:
   MPI_Comm comm_;
-  std::map<int, Groups> groups_;
+  std::map<int, RankGroups> rank_groups_;
   int rank_;
   std::filesystem::path checkpoint_;
   Say say_;

@@ -133,8 +133,8 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
     out.space = context.comm;
     if (out.spread) groups = time_groups(context, size, intervals);
     if (groups > 1) {
-      out.space = context.results.groups(groups).space;
-      out.time = context.results.groups(groups).time;
+      out.space = context.results.rank_groups(groups).space;
+      out.time = context.results.rank_groups(groups).time;
     }
   } else {
     out.space = MPI_COMM_SELF;

@@ -6,7 +6,7 @@
 
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"
 
@@ -81,7 +81,7 @@ TEST(RigidRotor, UnbalanceTurnsWithTheShaft) {
 
 TEST(RigidRotor, GroupsNeedEqualBearings) {
   system::Train t = rigid_rotor();
-  const auto g = system::groups_of(t);
+  const auto g = system::dimensionless_groups(t);
   ASSERT_TRUE(g.has_value());
   const double load = 20 * 9.81 + 50, scale = std::sqrt(load / (20 * 5e-5));
   EXPECT_NEAR(g->speed_scale, scale, 1e-12 * scale);
@@ -89,5 +89,5 @@ TEST(RigidRotor, GroupsNeedEqualBearings) {
   EXPECT_NEAR(g->unbalance, 0.2, 1e-12);
   EXPECT_NEAR(g->sommerfeld(2 * scale), g->load / 4, 1e-12);
   t.supports[1].geometry.clearance *= 1.1;
-  EXPECT_FALSE(system::groups_of(t).has_value());
+  EXPECT_FALSE(system::dimensionless_groups(t).has_value());
 }

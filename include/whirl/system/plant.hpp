@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "whirl/problem/system.hpp"
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::system {
 
@@ -71,7 +71,7 @@ public:
   /// The same into the distributed state `to`, each rank its rows. Collective; throws as the films do.
   virtual void resample(const Plant& other, const double* x, Vec to) const { core::fill(to, resampled(other, x)); }
   /// Nondimensional groups of a rigid rotor in equal bearings; empty for all else. Not collective.
-  [[nodiscard]] virtual std::optional<Groups> groups() const { return {}; }
+  [[nodiscard]] virtual std::optional<DimensionlessGroups> groups() const { return {}; }
   /// Whole state on every rank [size()].
   [[nodiscard]] std::vector<double> gather(Vec x) const { return core::gather(x); }
 };

@@ -145,7 +145,7 @@ public:
   [[nodiscard]] core::Vector guess() override;
   void displace(Vec x, const std::array<double, 2>& offset) override;
   [[nodiscard]] bool has_film_mesh() const override;
-  [[nodiscard]] std::optional<Groups> groups() const override { return groups_of(train_); }
+  [[nodiscard]] std::optional<DimensionlessGroups> groups() const override { return dimensionless_groups(train_); }
   [[nodiscard]] std::vector<double> resampled(const Plant& other, const double* x) const override;
   /// Films by the ranks that hold a share of them.
   void resample(const Plant& other, const double* x, Vec to) const override;

@@ -19,7 +19,7 @@
 #include "whirl/core/error.hpp"
 #include "whirl/film/elastic.hpp"
 #include "whirl/film/options.hpp"
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {
 namespace {
@@ -101,7 +101,8 @@ void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<L
   table.label_each({io::labels_of(loaded.back().profile.theta)});
 }
 
-void put_threshold(io::StudySummary& summary, const Mapper& map, const std::optional<system::Groups>& groups) {
+void put_threshold(io::StudySummary& summary, const Mapper& map,
+                   const std::optional<system::DimensionlessGroups>& groups) {
   if (!map.threshold) return;
   const double speed = groups->load / (groups->bearings * map.threshold->sommerfeld);
   summary.set("threshold.nondimensional_speed", speed, "1");
@@ -175,7 +176,7 @@ std::vector<double> numbers_of(const std::vector<MapPoint>& locus, const std::ve
 
 // The map on other film meshes: bars of the locus and of all that the summary says of it.
 void put_bars(const Context& context, Pieces& pieces, const BearingMapOptions& options, std::size_t which,
-              const Mapper& map, const std::optional<system::Groups>& groups) {
+              const Mapper& map, const std::optional<system::DimensionlessGroups>& groups) {
   io::StudySummary& summary = context.results.summary();
   Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine, context.layout));
   SummaryBars of_summary(summary, law_of(context.machine, context.layout));
@@ -227,7 +228,7 @@ StudyResult BearingMap::run(Context& context) {
   auto& results = context.results;
   auto& summary = results.summary();
   auto& group = results.group();
-  const auto groups = system::groups_of(train);
+  const auto groups = system::dimensionless_groups(train);
   put_groups(summary, train);
 
   Pieces pieces(results, context.resume);

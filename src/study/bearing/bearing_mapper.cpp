@@ -93,7 +93,7 @@ void Mapper::load() {
   }
 }
 
-void Mapper::find_threshold(const std::optional<system::Groups>& groups) {
+void Mapper::find_threshold(const std::optional<system::DimensionlessGroups>& groups) {
   if (!groups || !bearing_->rigid()) return;
   const auto found = piece("threshold", [&] {
     return find([&](const BearingEquilibrium& e) {

@@ -12,7 +12,7 @@
 #include "study/bearing/one_bearing.hpp"
 #include "study/pieces.hpp"
 #include "whirl/study/bearing/bearing_map.hpp"
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {
 
@@ -50,7 +50,7 @@ public:
   void load();
   /// A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A soft
   /// film or one with own states is another one at every speed: its thresholds belong to branches of equilibria.
-  void find_threshold(const std::optional<system::Groups>& groups);
+  void find_threshold(const std::optional<system::DimensionlessGroups>& groups);
   void squeeze();
 
   std::vector<MapPoint> locus;

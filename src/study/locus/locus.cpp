@@ -25,7 +25,7 @@
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
 #include "whirl/study/equilibrium/equilibrium_branch.hpp"
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {
 namespace {

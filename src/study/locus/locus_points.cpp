@@ -10,7 +10,7 @@
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {
 namespace {
@@ -56,7 +56,7 @@ void LocusFollower::record_row(const std::string& type, const Row& row, double e
   c.second_value = {deck::from_si(row.second, options_.second.range.unit), options_.second.range.unit};
   if (!std::isnan(error)) c.uncertainty = error * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
   const double speed = first_.path == "speed" ? row.first : system_->speed();
-  if (const auto groups = system::groups_of(system_->train())) {
+  if (const auto groups = system::dimensionless_groups(system_->train())) {
     c.more["nondimensional_speed"] = speed / groups->speed_scale;
     c.more["nondimensional_load"] = groups->load;
     c.more["nondimensional_unbalance"] = groups->unbalance;

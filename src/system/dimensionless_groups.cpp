@@ -1,4 +1,4 @@
-#include "whirl/system/groups.hpp"
+#include "whirl/system/dimensionless_groups.hpp"
 
 #include <cmath>
 #include <complex>
@@ -15,7 +15,7 @@ double load_of_rigid(const Train& train) {
   return x == 0 ? y : std::hypot(x, y);
 }
 
-std::optional<Groups> groups_of(const Train& train) {
+std::optional<DimensionlessGroups> dimensionless_groups(const Train& train) {
   const auto& r = train.rotor;
   if (r.type != rotor::Options::Type::rigid || train.supports.empty()) return std::nullopt;
   const Support& first = train.supports.front();
@@ -27,7 +27,7 @@ std::optional<Groups> groups_of(const Train& train) {
       return std::nullopt;
   const double load = load_of_rigid(train), ratio = g.clearance / g.radius;
   if (!(load > 0)) return std::nullopt;
-  Groups out;
+  DimensionlessGroups out;
   out.speed_scale = std::sqrt(load / (r.mass * g.clearance));
   out.load = ratio * ratio * load / (first.lubricant.viscosity * out.speed_scale * g.length * 2 * g.radius);
   std::complex<double> unbalance = 0;

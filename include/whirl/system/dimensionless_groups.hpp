@@ -9,7 +9,7 @@ namespace whirl::system {
 
 /// Omega_0 = sqrt(F0/(m c)), F0* = (c/R)^2 F0/(mu Omega_0 L D), a* = U/(m c), with F0 the load of the whole rotor
 /// (weight and static load) and U its unbalance. Source: van de Vrande (2001), sec. 5.1.
-struct Groups {
+struct DimensionlessGroups {
   double speed_scale = 0;         ///< Omega_0 [rad/s]; Omega* = Omega/Omega_0
   double load = 0;                ///< F0* [-]
   double unbalance = 0;           ///< a* [-]
@@ -25,6 +25,6 @@ struct Groups {
 
 /// Empty unless the rotor is rigid, loaded but not upwards, and all its bearings have the same geometry, film and
 /// viscosity.
-[[nodiscard]] std::optional<Groups> groups_of(const Train& train);
+[[nodiscard]] std::optional<DimensionlessGroups> dimensionless_groups(const Train& train);
 
 }  // namespace whirl::system
