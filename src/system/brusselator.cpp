@@ -25,7 +25,7 @@ namespace {
 
 class BrusselatorSystem final : public Plant {
 public:
-  BrusselatorSystem(MPI_Comm comm, Along<Brusselator> along)
+  BrusselatorSystem(MPI_Comm comm, OptionsAlong<Brusselator> along)
       : comm_(comm), along_(std::move(along)), parameter_(along_.value), o_(along_.at(parameter_)) {
     const PetscInt points = o_.cells - 1;
     const int rank = core::rank_of(comm), size = core::size_of(comm);
@@ -147,7 +147,7 @@ private:
   }
 
   MPI_Comm comm_;
-  Along<Brusselator> along_;
+  OptionsAlong<Brusselator> along_;
   double parameter_;
   Brusselator o_;
   PetscInt n_ = 0, begin_ = 0, local_ = 0;  // states in all; first point and states on this rank
@@ -157,7 +157,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Brusselator> along) {
+std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Brusselator> along) {
   return std::make_unique<BrusselatorSystem>(comm, std::move(along));
 }
 

@@ -105,7 +105,7 @@ class FlowSystem final : public Plant {
   using State = typename F::State;
 
 public:
-  FlowSystem(MPI_Comm comm, Along<Options> along)
+  FlowSystem(MPI_Comm comm, OptionsAlong<Options> along)
       : comm_(comm),
         along_(std::move(along)),
         parameter_(along_.value),
@@ -194,7 +194,7 @@ private:
   }
 
   MPI_Comm comm_;
-  Along<Options> along_;
+  OptionsAlong<Options> along_;
   double parameter_;
   Options o_;
   bool by_speed_;  // the parameter is the frequency of the force
@@ -205,13 +205,13 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Lorenz> along) {
+std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Lorenz> along) {
   return std::make_unique<FlowSystem<Lorenz>>(comm, std::move(along));
 }
-std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Rossler> along) {
+std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Rossler> along) {
   return std::make_unique<FlowSystem<Rossler>>(comm, std::move(along));
 }
-std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Duffing> along) {
+std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Duffing> along) {
   return std::make_unique<FlowSystem<Duffing>>(comm, std::move(along));
 }
 

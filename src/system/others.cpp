@@ -22,13 +22,13 @@ void describe_others(deck::Description<Machine>& d) {
   });
 }
 
-std::unique_ptr<Plant> make_other(MPI_Comm comm, const Along<Machine>& along) {
+std::unique_ptr<Plant> make_other(MPI_Comm comm, const OptionsAlong<Machine>& along) {
   const std::string wanted = along.at(along.value).system.name;
   std::unique_ptr<Plant> made;
   for_each(all, [&]<class K>(const K&) {
     if (K::key != wanted) return;
-    Along<K> own{[at = along.at](double p) { return static_cast<const Slot<K>&>(at(p)).options; }, along.value,
-                 along.magnitude};
+    OptionsAlong<K> own{[at = along.at](double p) { return static_cast<const Slot<K>&>(at(p)).options; }, along.value,
+                        along.magnitude};
     made = make_system(comm, std::move(own));
   });
   core::require(made != nullptr, "a rotor is made elsewhere");

@@ -74,7 +74,7 @@ std::unique_ptr<system::Plant> flow(double Options::*option) {
     changed.*option = p;
     return changed;
   };
-  return system::make_system(MPI_COMM_WORLD, system::Along<Options>{at, o.*option, 1});
+  return system::make_system(MPI_COMM_WORLD, system::OptionsAlong<Options>{at, o.*option, 1});
 }
 
 template <class Options>

@@ -12,7 +12,7 @@ namespace whirl::system {
 
 /// Options of a kind of system as a function of the parameter of a branch.
 template <class Options>
-struct Along {
+struct OptionsAlong {
   std::function<Options(double)> at;
   double value = 0;      ///< to start with
   double magnitude = 1;  ///< typical size, for the steps of difference quotients
@@ -33,6 +33,6 @@ void describe(deck::Description<Brusselator>& d);
 
 /// State: u_1, v_1, u_2, v_2, ... at the inner points, whole points on each rank; F = dx/dt - f(x). It shows (u, v) in
 /// the middle of the tube. Collective.
-[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Brusselator> along);
+[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Brusselator> along);
 
 }  // namespace whirl::system

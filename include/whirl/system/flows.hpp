@@ -36,8 +36,8 @@ struct Duffing {
 void describe(deck::Description<Duffing>& d);
 
 /// F = dx/dt - f(x), dimensionless, time in seconds; the first rank holds all states. Collective.
-[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Lorenz> along);
-[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Rossler> along);
-[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, Along<Duffing> along);
+[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Lorenz> along);
+[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Rossler> along);
+[[nodiscard]] std::unique_ptr<Plant> make_system(MPI_Comm comm, OptionsAlong<Duffing> along);
 
 }  // namespace whirl::system

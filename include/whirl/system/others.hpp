@@ -33,7 +33,7 @@ struct SystemName {
 struct Machine;
 
 /// The system named by a machine that is no rotor, as a function of a parameter. Collective.
-[[nodiscard]] std::unique_ptr<Plant> make_other(MPI_Comm comm, const Along<Machine>& along);
+[[nodiscard]] std::unique_ptr<Plant> make_other(MPI_Comm comm, const OptionsAlong<Machine>& along);
 
 }  // namespace whirl::system
 
