@@ -34,10 +34,10 @@ std::vector<Endless> endless_of(const std::vector<Resonance>& resonances, std::s
   return out;
 }
 
-Between between(const std::vector<double>& frequencies, const std::vector<std::complex<double>>& eigenvalues,
-                const ResonanceSearch& search,
-                const std::function<std::vector<Transfer>(const std::vector<double>&)>& at) {
-  Between out{narrow_resonances(eigenvalues, frequencies, search), {}, {}};
+ResonancesBetween between(const std::vector<double>& frequencies, const std::vector<std::complex<double>>& eigenvalues,
+                          const ResonanceSearch& search,
+                          const std::function<std::vector<Transfer>(const std::vector<double>&)>& at) {
+  ResonancesBetween out{narrow_resonances(eigenvalues, frequencies, search), {}, {}};
   std::erase_if(out.narrow, [](const Resonance& r) { return r.undamped; });
   const std::vector<Resonance> undamped =
       undamped_resonances(eigenvalues, frequencies.front() * (1 - at_pole), frequencies.back() * (1 + at_pole), search);

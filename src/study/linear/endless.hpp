@@ -33,15 +33,16 @@ struct Endless {
 
 /// Resonances between frequencies: damped ones that these pass over, with the transfer functions beside their tops
 /// (empty where there is no answer), and undamped ones that some function has a pole at.
-struct Between {
+struct ResonancesBetween {
   std::vector<Resonance> narrow;
   std::vector<Transfer> at_narrow;
   std::vector<Endless> endless;
 };
 /// Among the eigenvalues [1/s] of the machine; `at`: its transfer functions at some frequencies [rad/s].
-[[nodiscard]] Between between(const std::vector<double>& frequencies,
-                              const std::vector<std::complex<double>>& eigenvalues, const ResonanceSearch& search,
-                              const std::function<std::vector<Transfer>(const std::vector<double>&)>& at);
+[[nodiscard]] ResonancesBetween between(const std::vector<double>& frequencies,
+                                        const std::vector<std::complex<double>>& eigenvalues,
+                                        const ResonanceSearch& search,
+                                        const std::function<std::vector<Transfer>(const std::vector<double>&)>& at);
 
 /// Why each of the frequencies has no answer (empty: it has one): `reasons` says why its functions were not computed,
 /// or it is an undamped resonance but for rounding; then they are made not a number.
