@@ -92,7 +92,7 @@ void RotorSystem::build() {
 
 // What may refuse its values comes before anything changes.
 void RotorSystem::set_train(Train train) {
-  const Change change = change_between(train_, train);
+  const TrainChange change = change_between(train_, train);
   std::unique_ptr<rotor::Rotor> rotor = change.shaft ? hub_->make_rotor(train.rotor) : nullptr;
   if (rotor) hub_->check_pattern(*rotor);
   std::vector<std::unique_ptr<FilmPart>> films = parts_at(train, change.films);

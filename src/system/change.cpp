@@ -17,13 +17,13 @@ rotor::Options shaft_of(rotor::Options o) {
 
 }  // namespace
 
-Change change_between(const Train& from, const Train& to) {
+TrainChange change_between(const Train& from, const Train& to) {
   const rotor::Options &a = from.rotor, &b = to.rotor;
   core::require(a.type == b.type && a.segments.size() == b.segments.size() && a.reduction == b.reduction &&
                     from.supports.size() == to.supports.size() && from.loads.size() == to.loads.size() &&
                     from.elements.size() == to.elements.size(),
                 "trains of the same shape");
-  Change out;
+  TrainChange out;
   out.shaft = shaft_of(a) != shaft_of(b);
   // Complex modes depend on it.
   if (a.reduction.type == rotor::Reduction::Type::craig_bampton_state)

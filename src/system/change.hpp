@@ -9,7 +9,7 @@
 namespace whirl::system {
 
 /// Parts of a train that have other numbers than those of another one.
-struct Change {
+struct TrainChange {
   bool shaft = false;    ///< beams, discs, the mass of a rigid rotor: all matrices, load and unbalance
   bool damping = false;  ///< stiffness_damping alone, of a rotor whose basis does not depend on it
   bool joints = false;   ///< mass, damping or stiffness of pedestals and elements
@@ -20,6 +20,6 @@ struct Change {
 };
 
 /// core::Bug unless both have the same shape: nodes, masters, bearings, pedestals.
-[[nodiscard]] Change change_between(const Train& from, const Train& to);
+[[nodiscard]] TrainChange change_between(const Train& from, const Train& to);
 
 }  // namespace whirl::system

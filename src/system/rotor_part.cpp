@@ -68,7 +68,7 @@ void RotorPart::check_pattern(const rotor::Rotor& rotor) const {
     throw core::InputError("'rotor.internal_damping' varies from a positive value on, not from none");
 }
 
-void RotorPart::take(const Change& change, std::unique_ptr<rotor::Rotor> rotor) {
+void RotorPart::take(const TrainChange& change, std::unique_ptr<rotor::Rotor> rotor) {
   if (rotor)
     rotor_ = std::move(rotor);
   else if (change.damping)

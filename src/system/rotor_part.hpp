@@ -109,9 +109,9 @@ public:
   /// without it. Throws core::InputError.
   void check_pattern(const rotor::Rotor& rotor) const;
   /// Takes what differs from the train, which has changed; `rotor` is a new one if its shaft differs. Collective.
-  void take(const Change& change, std::unique_ptr<rotor::Rotor> rotor);
+  void take(const TrainChange& change, std::unique_ptr<rotor::Rotor> rotor);
   /// Differences of two trains over `step`. Exact where the rows are linear in a number of the train. Collective.
-  [[nodiscard]] Rates rates(const Change& change, const Train& minus, const Train& plus, double step);
+  [[nodiscard]] Rates rates(const TrainChange& change, const Train& minus, const Train& plus, double step);
   /// f [rows()] = what they do to the rows. Collective.
   void apply(const Rates& rates, const Instant& at, double* f) const;
 

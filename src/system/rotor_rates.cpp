@@ -40,7 +40,7 @@ std::vector<StaticLoad> rate_of(const std::vector<StaticLoad>& minus, const std:
 
 }  // namespace
 
-RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, const Train& plus, double step) {
+RotorPart::Rates RotorPart::rates(const TrainChange& change, const Train& minus, const Train& plus, double step) {
   Rates out;
   const auto rate = [step](double a, double b) { return (b - a) / step; };
   const auto rates_of = [&](const std::vector<double>& a, std::vector<double> b) {

@@ -10,7 +10,7 @@ namespace whirl::system {
 
 RotorSystem::Slope::Slope(RotorSystem& system, const Train& minus, const Train& plus, double step)
     : system_(system), step_(step) {
-  const Change change = change_between(minus, plus);
+  const TrainChange change = change_between(minus, plus);
   hub_ = system.hub_->rates(change, minus, plus, step);
   // Of bearings that are aligned to the shaft, the axis moves with it.
   if (change.axes) {
