@@ -159,15 +159,15 @@ bool holds_shaft(const Element& e) {
 namespace {
 
 // xx, xy, yx, yy into rows and columns from `row` and `column` of a 4 x 4 matrix.
-void put(const std::array<double, 4>& block, std::size_t row, std::size_t column, Coefficients::Matrix& to) {
+void put(const std::array<double, 4>& block, std::size_t row, std::size_t column, ElementCoefficients::Matrix& to) {
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) to[4 * (row + i) + column + j] = block[2 * i + j];
 }
 
-Coefficients constant_of(const Element& e) {
-  Coefficients out;
+ElementCoefficients constant_of(const Element& e) {
+  ElementCoefficients out;
   const SlopeTerms none, &slopes = e.slopes ? *e.slopes : none;
-  const auto fill = [](const std::array<double, 4>& plane, const SlopeBlocks& of, Coefficients::Matrix& to) {
+  const auto fill = [](const std::array<double, 4>& plane, const SlopeBlocks& of, ElementCoefficients::Matrix& to) {
     put(plane, 0, 0, to);
     put(of.force, 0, 2, to);
     put(of.moment, 2, 0, to);
@@ -206,8 +206,8 @@ ElementCurve::At ElementCurve::at(double speed) const {
                     name_, low, high, speed));
   std::array<double, std::size(cells)> value{}, slope{};
   curve_.at(beyond ? speed : std::clamp(speed, low, high), value, slope);
-  Coefficients::Matrix* const to[] = {&out.value.stiffness, &out.value.damping, &out.value.mass};
-  Coefficients::Matrix* const by[] = {&out.by_speed.stiffness, &out.by_speed.damping, &out.by_speed.mass};
+  ElementCoefficients::Matrix* const to[] = {&out.value.stiffness, &out.value.damping, &out.value.mass};
+  ElementCoefficients::Matrix* const by[] = {&out.by_speed.stiffness, &out.by_speed.damping, &out.by_speed.mass};
   for (std::size_t k = 0; k < value.size(); ++k) {
     (*to[k / 16])[k % 16] += value[k];
     (*by[k / 16])[k % 16] = slope[k];

@@ -57,7 +57,7 @@ RotorPart::Joints RotorPart::joints_of(const Train& train, double speed, bool by
     }
   for (std::size_t e = 0; e < ends_.size(); ++e) {
     const ElementCurve::At at = ElementCurve(train.elements[e]).at(speed);
-    const Coefficients& c = by_speed ? at.by_speed : at.value;
+    const ElementCoefficients& c = by_speed ? at.by_speed : at.value;
     for (std::size_t d = 0; d < ends_[e].size(); ++d)
       for (const auto& [row, to] : ends_[e][d])
         for (std::size_t f = 0; owns(row) && f < ends_[e].size(); ++f)
@@ -138,7 +138,7 @@ void RotorPart::add_rest(const Train& train, const Motions& rest, bool by_speed,
   for (std::size_t e = 0; e < rest.size(); ++e) {
     if (carries_static_load(train.elements[e])) continue;
     const ElementCurve::At at = ElementCurve(train.elements[e]).at(*speed_);
-    const Coefficients::Matrix& k = by_speed ? at.by_speed.stiffness : at.value.stiffness;
+    const ElementCoefficients::Matrix& k = by_speed ? at.by_speed.stiffness : at.value.stiffness;
     for (std::size_t d = 0; d < ends_[e].size(); ++d)
       for (const auto& [row, to] : ends_[e][d])
         for (std::size_t f = 0; owns(row) && f < ends_[e].size(); ++f)
@@ -177,7 +177,7 @@ RotorPart::Motions RotorPart::motions(const double* states) const {
 std::array<double, 4> RotorPart::force(std::size_t element, const std::array<double, 4>& motion,
                                        const std::array<double, 4>& velocity) const {
   const Element& e = train_.elements[element];
-  const Coefficients c = ElementCurve(e).at(*speed_).value;
+  const ElementCoefficients c = ElementCurve(e).at(*speed_).value;
   const bool moved = !carries_static_load(e) && !rest_.empty();
   std::array<double, 4> out{};
   for (std::size_t d = 0; d < 4; ++d)

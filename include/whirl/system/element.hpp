@@ -61,7 +61,7 @@ struct ElementAt {
 
 /// K [N/m], C [N s/m] and M [kg] of an element by the freedoms x, y, dx/dz, dy/dz, row by row; moments and slopes in
 /// their own units.
-struct Coefficients {
+struct ElementCoefficients {
   using Matrix = std::array<double, 16>;
   Matrix stiffness{}, damping{}, mass{};
 };
@@ -110,14 +110,14 @@ public:
   /// Whether they change with the speed.
   [[nodiscard]] bool varies() const { return curve_.varies(); }
   struct At {
-    Coefficients value, by_speed;
+    ElementCoefficients value, by_speed;
   };
   /// At a speed [rad/s]. Throws core::DomainError beyond a table that does not hold its ends.
   [[nodiscard]] At at(double speed) const;
 
 private:
   std::string name_;
-  Coefficients constant_;
+  ElementCoefficients constant_;
   core::Curve curve_;
   bool hold_;
 };
