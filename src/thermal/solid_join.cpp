@@ -27,7 +27,7 @@ void Solid::load(const std::vector<double>& film, Vec rhs) const {
     if (!held(wall_[c])) b[local(wall_[c])] += joined_[c] * film[c];
 }
 
-Coupling Solid::couple(PetscInt cells, const std::vector<PetscInt>& film_cell) const {
+HeatCoupling Solid::couple(PetscInt cells, const std::vector<PetscInt>& film_cell) const {
   core::agree(comm_, [&] { core::require(film_cell.size() == wall_.size(), "a cell of the film for each column"); });
   // Columns, rows and the cells beside them lie on one rank.
   std::vector<PetscInt> of_solid(static_cast<std::size_t>(count()) + 1, 0),
@@ -39,7 +39,7 @@ Coupling Solid::couple(PetscInt cells, const std::vector<PetscInt>& film_cell) c
     ++of_solid[static_cast<std::size_t>(local(wall_[c]))];
     ++of_film[static_cast<std::size_t>(film_cell[c] - first)];
   }
-  Coupling out;
+  HeatCoupling out;
   check(MatCreateAIJ(comm_, count(), cells, PETSC_DETERMINE, PETSC_DETERMINE, 0, of_solid.data(), 0, nullptr,
                      out.solid_film.put()));
   check(MatCreateAIJ(comm_, cells, count(), PETSC_DETERMINE, PETSC_DETERMINE, 0, of_film.data(), 0, nullptr,
@@ -48,7 +48,7 @@ Coupling Solid::couple(PetscInt cells, const std::vector<PetscInt>& film_cell) c
   return out;
 }
 
-void Solid::update(Coupling& coupling, const std::vector<PetscInt>& film_cell) const {
+void Solid::update(HeatCoupling& coupling, const std::vector<PetscInt>& film_cell) const {
   for (std::size_t c = 0; c < wall_.size(); ++c) {
     const double into = held(wall_[c]) ? 0 : -joined_[c];
     check(MatSetValue(coupling.solid_film.get(), wall_[c], film_cell[c], into, INSERT_VALUES));

@@ -41,7 +41,7 @@ struct Found {
 // [     journal   J_f ]
 // [ f_B   f_J    film ]
 Found solve_together(Together& all) {
-  Coupling b = all.bush.couple(all.size(), all.cell), j = all.journal.couple(all.size(), all.cell);
+  HeatCoupling b = all.bush.couple(all.size(), all.cell), j = all.journal.couple(all.size(), all.cell);
   all.bush.update(b, all.cell);
   core::Matrix film = core::make_matrix(PETSC_COMM_WORLD, all.size(), std::vector<PetscInt>(all.cell.size(), 1));
   Found out{all.bush.temperature(300), all.journal.temperature(300),

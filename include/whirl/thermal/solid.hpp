@@ -47,7 +47,7 @@ struct Heats {
 void use_multigrid(PC pc);
 
 /// Blocks of the matrix of film and solid together, -joined in each.
-struct Coupling {
+struct HeatCoupling {
   core::Matrix solid_film;  // W/K [cells of the solid, cells of the film]
   core::Matrix film_solid;  // W/K [cells of the film, cells of the solid]
 };
@@ -95,9 +95,9 @@ public:
   void join(const std::vector<double>& film);
   /// Blocks beside matrix() for a film of `cells` cells on this rank; film_cell [r, n] are the numbers, among all
   /// ranks, of its cells at the wall. The film's own block has `joined` on their diagonal. Collective.
-  [[nodiscard]] Coupling couple(PetscInt cells, const std::vector<PetscInt>& film_cell) const;
+  [[nodiscard]] HeatCoupling couple(PetscInt cells, const std::vector<PetscInt>& film_cell) const;
   /// The same after another join(), into blocks that couple() made. Collective.
-  void update(Coupling& coupling, const std::vector<PetscInt>& film_cell) const;
+  void update(HeatCoupling& coupling, const std::vector<PetscInt>& film_cell) const;
   /// rhs = supply + joined times film temperature, K [r, n].
   void load(const std::vector<double>& film, Vec rhs) const;
 
