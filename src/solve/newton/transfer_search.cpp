@@ -134,22 +134,22 @@ std::optional<int> TransferSearch::winding(int points, std::vector<Complex> mark
 // Beyn's method: with mu = (lambda - centre)/size and the moments A_k = 1/(2 pi i) int mu^k T^-1 V dlambda, the block
 // Hankel matrices B0 = [A_(i+j)] = U S W^* and B1 = [A_(i+j+1)] give the eigenvalues mu of U^* B1 W S^-1 and, in the
 // first rows of U, their motions.
-std::vector<Root> TransferSearch::candidates(const Curve& curve, int points, int wanted) const {
+std::vector<Root> TransferSearch::candidates(const Contour& contour, int points, int wanted) const {
   const Index n = machine_.hub();
   const Index lanes = std::min<Index>(n, wanted + 4), blocks = (wanted + 4 + lanes - 1) / lanes;
   MatrixXd v(n, lanes);
   for (Index i = 0; i < v.size(); ++i) v.data()[i] = std::sin(1.0 + 0.9 * static_cast<double>(i * (i % 7 + 1)));
   std::vector<MatrixXcd> moments(static_cast<std::size_t>(2 * blocks), MatrixXcd::Zero(n, lanes));
   for (int k = 0; k < points; ++k) {
-    const double angle = (curve.half ? pi : 2 * pi) * (k + 0.5) / points;
-    const Complex mu = Complex(curve.along * std::cos(angle), curve.across * std::sin(angle)) / curve.size();
-    const Complex slope(-curve.along * std::sin(angle), curve.across * std::cos(angle));
-    const Factors t(fitted(curve.centre + curve.size() * mu, false));
+    const double angle = (contour.half ? pi : 2 * pi) * (k + 0.5) / points;
+    const Complex mu = Complex(contour.along * std::cos(angle), contour.across * std::sin(angle)) / contour.size();
+    const Complex slope(-contour.along * std::sin(angle), contour.across * std::cos(angle));
+    const Factors t(fitted(contour.centre + contour.size() * mu, false));
     if (!t.regular()) continue;
     MatrixXcd y = t.solve(MatrixXcd(v.cast<Complex>())) * (slope / static_cast<double>(points));
     for (MatrixXcd& a : moments) {
       // The other half gives the conjugate.
-      if (curve.half)
+      if (contour.half)
         a += y.imag().cast<Complex>();
       else
         a += y;
@@ -176,9 +176,10 @@ std::vector<Root> TransferSearch::candidates(const Curve& curve, int points, int
   if (!pairs.values.allFinite()) return out;
   for (Index k = 0; k < rank; ++k) {
     const Complex mu = pairs.values(k);
-    Root r{curve.centre + curve.size() * mu, u.topRows(n) * pairs.vectors.col(k)};
+    Root r{contour.centre + contour.size() * mu, u.topRows(n) * pairs.vectors.col(k)};
     if (r.lambda.imag() < -1e-9 * ellipse_.size() || ellipse_.level(r.lambda) > 1.3 || r.motion.norm() == 0) continue;
-    if (std::hypot(mu.real() * curve.size() / curve.along, mu.imag() * curve.size() / curve.across) > 1.5) continue;
+    if (std::hypot(mu.real() * contour.size() / contour.along, mu.imag() * contour.size() / contour.across) > 1.5)
+      continue;
     r.motion.normalize();
     out.push_back(std::move(r));
   }

@@ -40,7 +40,7 @@ struct Ellipse {
 };
 
 /// A closed curve for moments: an ellipse with conjugate values on its other half, or a whole circle.
-struct Curve {
+struct Contour {
   std::complex<double> centre;
   double along, across;
   bool half;
@@ -70,7 +70,7 @@ public:
   /// distance to those known (`marks`, Im >= 0).
   [[nodiscard]] std::optional<int> winding(int points, std::vector<Complex> marks);
   /// Candidates with Im >= 0 for about `wanted` eigenvalues within a curve.
-  [[nodiscard]] std::vector<Root> candidates(const Curve& curve, int points, int wanted) const;
+  [[nodiscard]] std::vector<Root> candidates(const Contour& contour, int points, int wanted) const;
   /// Newton's method with the fit, and with the machine.
   [[nodiscard]] bool refine_on_fit(Root& root) const;
   /// The last step is added to `root` and returned: the solve was made where it began. Rounding is eps (|A| + |lambda
