@@ -20,7 +20,7 @@ using core::InputError;
 // Inner freedoms change nothing that is at rest: nodes move as the beam does, exactly, under forces at nodes and
 // weight.
 Options of_statics(Options o) {
-  if (n_inner(o.element) > 0) o.element = Element::timoshenko;
+  if (n_inner(o.element) > 0) o.element = BeamElement::timoshenko;
   return o;
 }
 

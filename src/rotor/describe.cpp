@@ -27,15 +27,15 @@ std::span<const deck::Name<Shear>> names(Shear) {
   return table;
 }
 
-std::span<const deck::Name<Element>> names(Element) {
-  static constexpr deck::Name<Element> table[] = {
-      {Element::rayleigh, "rayleigh", "no shear deformation, whatever 'shear' is; frequencies converge with h^4"},
-      {Element::timoshenko, "timoshenko",
+std::span<const deck::Name<BeamElement>> names(BeamElement) {
+  static constexpr deck::Name<BeamElement> table[] = {
+      {BeamElement::rayleigh, "rayleigh", "no shear deformation, whatever 'shear' is; frequencies converge with h^4"},
+      {BeamElement::timoshenko, "timoshenko",
        "one shear angle, tied to the curvature as in the static solution (Nelson 1980); exact at rest, frequencies "
        "converge with h^2"},
-      {Element::timoshenko_linear, "timoshenko_linear",
+      {BeamElement::timoshenko_linear, "timoshenko_linear",
        "shear angle and curvature linear and independent: two inner freedoms a plane, frequencies converge with h^4"},
-      {Element::timoshenko_hermitian, "timoshenko_hermitian",
+      {BeamElement::timoshenko_hermitian, "timoshenko_hermitian",
        "16 freedoms: displacement and slope cubic and independent, with shear angle and curvature at the ends, which "
        "are "
        "one where neither sections, discs nor bearings let them jump; frequencies converge with h^6"}};

@@ -66,9 +66,9 @@ Shapes nodal_shapes(const Beam& b, double x) {
   return n;
 }
 
-Shapes shapes(const Beam& b, Element element, double x) {
-  if (element == Element::timoshenko_linear) return linear_shapes(b, x);
-  if (element == Element::timoshenko_hermitian) return hermitian_shapes(b, x);
+Shapes shapes(const Beam& b, BeamElement element, double x) {
+  if (element == BeamElement::timoshenko_linear) return linear_shapes(b, x);
+  if (element == BeamElement::timoshenko_hermitian) return hermitian_shapes(b, x);
   return nodal_shapes(b, x);
 }
 
@@ -101,7 +101,7 @@ void add_piece(ElementMatrices& m, const Beam& b, const Shapes& at, double dz) {
   m.weight += dz * b.mass_per_length * at.u.transpose();
 }
 
-ElementMatrices empty_matrices(Element element) {
+ElementMatrices empty_matrices(BeamElement element) {
   const Eigen::Index n = 4 + n_inner(element);
   return {Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
           Eigen::VectorXd::Zero(n)};
@@ -109,7 +109,7 @@ ElementMatrices empty_matrices(Element element) {
 
 }  // namespace
 
-ElementMatrices element_matrices(const Beam& b, Element element) {
+ElementMatrices element_matrices(const Beam& b, BeamElement element) {
   if (n_inner(element) == 0) return {stiffness(b), translational_mass(b), rotary_mass(b), weight(b)};
   core::require(b.shear_parameter > 0, "a shear stiffness");
   ElementMatrices m = empty_matrices(element);
@@ -117,7 +117,7 @@ ElementMatrices element_matrices(const Beam& b, Element element) {
   return m;
 }
 
-ElementMatrices element_matrices(const Segment& s, const Material& material, Shear shear, Element element) {
+ElementMatrices element_matrices(const Segment& s, const Material& material, Shear shear, BeamElement element) {
   if (!tapered(s)) return element_matrices(make_beam(s, material, shear), element);
   core::require(n_inner(element) == 0 || shear != Shear::rigid, "a shear stiffness");
   const Beam half_way = make_beam(section_at(s, 0.5), material, shear);

@@ -33,7 +33,7 @@ Inner inner_freedoms(const Options& o) {
   for (std::size_t k = 0; k < o.segments.size(); ++k) {
     std::vector<int>& mine = out.of_segment.emplace_back();
     if (coupling_at(o, k)) continue;
-    if (o.element == Element::timoshenko_hermitian && k > 0 && !split.contains(static_cast<int>(k) + 1) &&
+    if (o.element == BeamElement::timoshenko_hermitian && k > 0 && !split.contains(static_cast<int>(k) + 1) &&
         !coupling_at(o, k - 1) && same_stiffness(o, k - 1)) {
       const std::vector<int>& before = out.of_segment[k - 1];
       mine.assign(before.end() - 2, before.end());

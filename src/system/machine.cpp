@@ -170,7 +170,7 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
     }
     t.supports.push_back(s);
   }
-  if (m.rotor.element == rotor::Element::timoshenko_hermitian) {
+  if (m.rotor.element == rotor::BeamElement::timoshenko_hermitian) {
     for (const int node : acting_nodes(m)) t.rotor.joints.push_back(node);
     for (const Unbalance& u : m.unbalance)
       for (const UnbalanceMass& x : unbalance_masses(m, u)) t.rotor.joints.push_back(x.node);

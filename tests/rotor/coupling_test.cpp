@@ -75,7 +75,7 @@ TEST(Coupling, TwoRigidBodiesOnSprings) {
 }
 
 TEST(Coupling, RigidMotionsStrainNothingAndMassIsThatOfTheOutline) {
-  for (const auto element : {rotor::Element::timoshenko, rotor::Element::timoshenko_hermitian}) {
+  for (const auto element : {rotor::BeamElement::timoshenko, rotor::BeamElement::timoshenko_hermitian}) {
     rotor::Options o = two_bars(2.1e11, 3);
     o.element = element;
     const rotor::Rotor r(MPI_COMM_WORLD, o);
@@ -118,7 +118,7 @@ TEST(Coupling, ItsDampingTurnsWithTheShaft) {
 
 // Free, the plane has three motions without stiffness: as a rigid body and about the hinge.
 TEST(Coupling, WithoutTiltStiffnessItIsAHinge) {
-  for (const auto element : {rotor::Element::timoshenko, rotor::Element::timoshenko_linear}) {
+  for (const auto element : {rotor::BeamElement::timoshenko, rotor::BeamElement::timoshenko_linear}) {
     rotor::Options o = two_bars(2.1e11, 3);
     o.element = element;
     o.couplings[0].tilt_stiffness = 0;

@@ -81,14 +81,14 @@ TEST(Disc, RigidMotionsSeeItsInertiaAtItsCentre) {
 // With the hub given in metres, frequencies converge: the section's tilt and the mean slope of the deflection are two
 // models, which differ by the shear of the shaft below the hub.
 TEST(Disc, OnAHubFrequenciesConvergeToAnotherModel) {
-  const auto lowest = [](rotor::Element element, int fine, bool hub) {
+  const auto lowest = [](rotor::BeamElement element, int fine, bool hub) {
     rotor::Options o = test::uniform_shaft(0.6, 0.06, 12 * fine);
     o.element = element;
     o.discs = {thick_disc(3 * fine + 1)};
     if (hub) o.discs[0].hub = {2 * fine + 1, 4 * fine + 1};
     return rotor::natural_frequencies(MPI_COMM_WORLD, o, {1, 12 * fine + 1}, 4);
   };
-  using enum rotor::Element;
+  using enum rotor::BeamElement;
   for (const auto element : {timoshenko_linear, timoshenko_hermitian}) {
     const auto section = lowest(element, 4, false), coarse = lowest(element, 2, true), fine = lowest(element, 4, true);
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(coarse[k] / fine[k], 1, 2e-5) << k;

@@ -23,16 +23,16 @@
 #include "whirl/rotor/shaft.hpp"
 
 using namespace whirl;
-using rotor::Element;
+using rotor::BeamElement;
 using std::numbers::pi;
 namespace trial = whirl::reference::trial_rotor;
 
 namespace {
 
-constexpr std::array all_elements{Element::rayleigh, Element::timoshenko, Element::timoshenko_linear,
-                                  Element::timoshenko_hermitian};
+constexpr std::array all_elements{BeamElement::rayleigh, BeamElement::timoshenko, BeamElement::timoshenko_linear,
+                                  BeamElement::timoshenko_hermitian};
 
-rotor::Options trial_shaft(Element element, int elements, bool with_disc) {
+rotor::Options trial_shaft(BeamElement element, int elements, bool with_disc) {
   rotor::Options o = test::uniform_shaft(0.3, 0.015, elements, 2.05e11, 7860);
   o.element = element;
   rotor::Disc d;
@@ -125,7 +125,7 @@ TEST(Families, TheQuasistaticElementIsTheOneInClosedForm) {
 // motions.
 TEST(Families, ElementsWithInnerFreedomsAreExactAtRest) {
   const rotor::Beam b = some_beam();
-  for (const Element e : {Element::timoshenko_linear, Element::timoshenko_hermitian}) {
+  for (const BeamElement e : {BeamElement::timoshenko_linear, BeamElement::timoshenko_hermitian}) {
     const rotor::ElementMatrices m = rotor::element_matrices(b, e);
     const Eigen::Index inner = rotor::n_inner(e);
     const Eigen::MatrixXd coupling = m.stiffness.bottomLeftCorner(inner, 4);
@@ -149,13 +149,13 @@ TEST(Families, ElementsWithInnerFreedomsAreExactAtRest) {
 
 TEST(TrialRotor, EveryReferenceFrequencyLiesWithinItsUncertainty) {
   struct Mesh {
-    Element element;
+    BeamElement element;
     int elements;
   };
   for (const trial::Case& c : trial::read().cases)
     for (const auto& [element, elements] :
-         c.shear ? std::vector<Mesh>{{Element::timoshenko_linear, 100}, {Element::timoshenko_hermitian, 40}}
-                 : std::vector<Mesh>{{Element::rayleigh, 150}}) {
+         c.shear ? std::vector<Mesh>{{BeamElement::timoshenko_linear, 100}, {BeamElement::timoshenko_hermitian, 40}}
+                 : std::vector<Mesh>{{BeamElement::rayleigh, 150}}) {
       const Whirler whirler(trial_shaft(element, elements, c.disc), c.speed);
       for (std::size_t i = 0; i < 10; ++i) {
         const int n = static_cast<int>(i) / 2 + 1;
@@ -173,8 +173,8 @@ TEST(TrialRotor, EveryReferenceFrequencyLiesWithinItsUncertainty) {
 TEST(TrialRotor, TheQuasistaticElementTendsToTheSameFrequencies) {
   for (const trial::Case& c : trial::read().cases) {
     if (!c.shear || c.speed == 0) continue;
-    const Whirler coarse(trial_shaft(Element::timoshenko, 40, c.disc), c.speed),
-        fine(trial_shaft(Element::timoshenko, 80, c.disc), c.speed);
+    const Whirler coarse(trial_shaft(BeamElement::timoshenko, 40, c.disc), c.speed),
+        fine(trial_shaft(BeamElement::timoshenko, 80, c.disc), c.speed);
     for (std::size_t i = 0; i < 6; ++i) {
       const int n = static_cast<int>(i) / 2 + 1;
       const double sign = i % 2 == 0 ? -1 : 1, high = 5e4;
@@ -195,13 +195,13 @@ TEST(Families, OrderOfTheFrequencies) {
     return std::sqrt(2 * c / (-b + std::sqrt(b * b - 4 * a * c)));
   };
   struct Expected {
-    Element element;
+    BeamElement element;
     double order;
     int elements;  // of the coarser mesh: elements no longer than the diameter for order six
   };
   for (const auto& [element, order, coarse] :
-       {Expected{Element::rayleigh, 4, 8}, Expected{Element::timoshenko, 2, 8},
-        Expected{Element::timoshenko_linear, 4, 8}, Expected{Element::timoshenko_hermitian, 6, 20}}) {
+       {Expected{BeamElement::rayleigh, 4, 8}, Expected{BeamElement::timoshenko, 2, 8},
+        Expected{BeamElement::timoshenko_linear, 4, 8}, Expected{BeamElement::timoshenko_hermitian, 6, 20}}) {
     std::vector<std::array<double, 3>> error;
     for (const int elements : {coarse, 2 * coarse}) {
       rotor::Options o = test::uniform_shaft(1, diameter, elements, e, rho);
@@ -210,12 +210,12 @@ TEST(Families, OrderOfTheFrequencies) {
       error.emplace_back();
       for (int n = 1; n <= 3; ++n)
         error.back()[static_cast<std::size_t>(n - 1)] =
-            found[static_cast<std::size_t>(n - 1)] / exact(n, element != Element::rayleigh) - 1;
+            found[static_cast<std::size_t>(n - 1)] / exact(n, element != BeamElement::rayleigh) - 1;
     }
     for (std::size_t n = 1; n < 3; ++n) {
       EXPECT_GT(error[1][n], 0) << "a conforming element is too stiff";
       EXPECT_GE(std::log2(error[0][n] / error[1][n]), order - 0.15) << static_cast<int>(element) << ", mode " << n + 1;
-      if (element == Element::timoshenko) {
+      if (element == BeamElement::timoshenko) {
         EXPECT_LE(std::log2(error[0][n] / error[1][n]), order + 0.3);
       }
     }
@@ -226,15 +226,15 @@ TEST(Families, OrderOfTheFrequencies) {
 // first order there; those that end at the disc are not.
 TEST(Families, HermitianElementsAreSplitAtDiscsStepsAndJoints) {
   const auto size = [](const rotor::Options& o) { return rotor::Rotor(MPI_COMM_WORLD, o).size(); };
-  rotor::Options o = trial_shaft(Element::timoshenko_hermitian, 10, false);
+  rotor::Options o = trial_shaft(BeamElement::timoshenko_hermitian, 10, false);
   EXPECT_EQ(size(o), 4 * 11 + 4 * 11);
   o.joints = {3, 3, 6};
   EXPECT_EQ(size(o), 4 * 11 + 4 * 13);
-  o.discs = trial_shaft(Element::timoshenko, 10, true).discs;  // node 4
+  o.discs = trial_shaft(BeamElement::timoshenko, 10, true).discs;  // node 4
   EXPECT_EQ(size(o), 4 * 11 + 4 * 14);
   o.segments[8].outer_mass_diameter *= 1.1;  // steps at nodes 9 and 10
   EXPECT_EQ(size(o), 4 * 11 + 4 * 16);
-  o.element = Element::timoshenko_linear;
+  o.element = BeamElement::timoshenko_linear;
   EXPECT_EQ(size(o), 4 * 11 + 4 * 10);
 }
 
@@ -243,7 +243,7 @@ TEST(Families, HermitianElementsAreSplitAtDiscsStepsAndJoints) {
 // precess at (I_p/I) Omega instead: algebraic multiplicity 6.
 TEST(TrialRotor, FreeRotorHasADefectiveZeroEigenvalueAndPrecesses) {
   const double speed = 1e4;
-  for (const Element element : all_elements) {
+  for (const BeamElement element : all_elements) {
     rotor::Options o = trial_shaft(element, 2, false);
     const rotor::Rotor r(MPI_COMM_WORLD, o);
     const Eigen::MatrixXd m = test::dense(r.matrices().mass.get()), g = test::dense(r.matrices().gyroscopic.get()),
@@ -269,7 +269,7 @@ TEST(TrialRotor, FreeRotorHasADefectiveZeroEigenvalueAndPrecesses) {
 // its speed passes the first forward critical speed; damped bearings move that up. Quasistatic element, as the
 // reference.
 TEST(TrialRotor, InternalDampingHasTheThresholdsOfTheReference) {
-  rotor::Options o = trial_shaft(Element::timoshenko, 20, true);
+  rotor::Options o = trial_shaft(BeamElement::timoshenko, 20, true);
   const trial::Reference reference = trial::read();
   o.internal_damping = reference.internal_damping;
   const auto growth = [&](double damping, double speed) {
@@ -295,9 +295,9 @@ TEST(TrialRotor, OtherElementsHaveTheThresholdsAndCriticalSpeedsOfTheReference) 
   const trial::Reference reference = trial::read();
   const auto shaft = [](const trial::OfElement& of) {
     const auto found = std::find_if(all_elements.begin(), all_elements.end(),
-                                    [&](Element e) { return deck::name_of(e) == of.element; });
+                                    [&](BeamElement e) { return deck::name_of(e) == of.element; });
     EXPECT_NE(found, all_elements.end()) << of.element;
-    return trial_shaft(found == all_elements.end() ? Element::timoshenko : *found, 10, of.disc);
+    return trial_shaft(found == all_elements.end() ? BeamElement::timoshenko : *found, 10, of.disc);
   };
   EXPECT_EQ(reference.other_thresholds.size(), 12u);
   for (const trial::OfElement& t : reference.other_thresholds) {
@@ -323,7 +323,7 @@ TEST(TrialRotor, OtherElementsHaveTheThresholdsAndCriticalSpeedsOfTheReference) 
 // Any family, whole and reduced: N is the stiffness across the planes, C the stiffness, and in a frame that turns with
 // the shaft a bent shape held there, q' = Omega e_z x q, meets no damping: C q' + Omega N q = 0.
 TEST(Families, AShapeThatTurnsWithTheShaftIsNotDampedByIt) {
-  for (const Element e : all_elements)
+  for (const BeamElement e : all_elements)
     for (const bool reduced : {false, true}) {
       rotor::Options o = test::stepped_shaft();
       o.element = e;
@@ -354,7 +354,7 @@ TEST(Families, AlignmentIsTheSame) {
   rotor::Options o = test::stepped_shaft();
   const std::vector<rotor::Support> supports{{2, 0}, {12, 0}};
   const rotor::RigidStatic usual = rotor::rigid_static(MPI_COMM_WORLD, o, supports, 9.81);
-  for (const Element e : {Element::timoshenko_linear, Element::timoshenko_hermitian}) {
+  for (const BeamElement e : {BeamElement::timoshenko_linear, BeamElement::timoshenko_hermitian}) {
     o.element = e;
     const rotor::RigidStatic other = rotor::rigid_static(MPI_COMM_WORLD, o, supports, 9.81);
     EXPECT_EQ(other.deflection, usual.deflection);
@@ -364,7 +364,7 @@ TEST(Families, AlignmentIsTheSame) {
 
 // Reductions see inner freedoms as slaves: with all modes of the shaft with its masters held they are exact.
 TEST(Families, ReductionsTakeInnerFreedomsAway) {
-  for (const Element e : {Element::timoshenko_linear, Element::timoshenko_hermitian}) {
+  for (const BeamElement e : {BeamElement::timoshenko_linear, BeamElement::timoshenko_hermitian}) {
     rotor::Options o = test::stepped_shaft();
     o.element = e;
     o.stiffness_damping = 0;
@@ -381,6 +381,6 @@ TEST(Families, ElementsWithIndependentShearRefuseARigidOne) {
   rotor::Options o = test::uniform_shaft(1, 0.1, 4);
   o.shear = rotor::Shear::rigid;
   EXPECT_NO_THROW(rotor::validate(o));
-  o.element = Element::timoshenko_linear;
+  o.element = BeamElement::timoshenko_linear;
   EXPECT_THROW(rotor::validate(o), core::InputError);
 }

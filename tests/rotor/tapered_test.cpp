@@ -16,13 +16,13 @@
 #include "whirl/rotor/shaft.hpp"
 
 using namespace whirl;
-using rotor::Element;
+using rotor::BeamElement;
 using std::numbers::pi;
 
 namespace {
 
-constexpr std::array all_elements{Element::rayleigh, Element::timoshenko, Element::timoshenko_linear,
-                                  Element::timoshenko_hermitian};
+constexpr std::array all_elements{BeamElement::rayleigh, BeamElement::timoshenko, BeamElement::timoshenko_linear,
+                                  BeamElement::timoshenko_hermitian};
 
 }  // namespace
 
@@ -36,7 +36,7 @@ TEST(Tapered, ConeUnderATipForceConvergesToTheExactDeflection) {
   std::vector<double> error;
   for (const int elements : {4, 8, 16}) {
     rotor::Options o = test::uniform_shaft(length, thin, elements, e);
-    o.element = Element::rayleigh;
+    o.element = BeamElement::rayleigh;
     for (int n = 0; n < elements; ++n) {
       rotor::Segment& s = o.segments[static_cast<std::size_t>(n)];
       s.outer_mass_diameter = thin + (thick - thin) * n / elements;
@@ -69,9 +69,9 @@ TEST(Tapered, MassAndRigidInertiaAreExact) {
   };
   const double mass = moment(0.04, 0.1, 0) - moment(0.02, 0.01, 0);
   EXPECT_NEAR(rotor::total_mass(o) / mass, 1, 1e-8);
-  for (const Element e : all_elements) {
+  for (const BeamElement e : all_elements) {
     const rotor::ElementMatrices m = rotor::element_matrices(
-        o.segments[0], o.material, e == Element::rayleigh ? rotor::Shear::rigid : rotor::Shear::cowper_hollow, e);
+        o.segments[0], o.material, e == BeamElement::rayleigh ? rotor::Shear::rigid : rotor::Shear::cowper_hollow, e);
     Eigen::VectorXd shift = Eigen::VectorXd::Zero(4 + rotor::n_inner(e)), turn = shift;
     shift.head(4) << 1, 0, 1, 0;
     turn.head(4) << 0, 1, 0.5, 1;
@@ -87,7 +87,7 @@ TEST(Tapered, MassAndRigidInertiaAreExact) {
 
 // The families keep their orders and agree in the limit; a segment that is cut in two is the same cone.
 TEST(Tapered, FamiliesConvergeToTheSameFrequencies) {
-  const auto frequencies = [](Element element, int elements) {
+  const auto frequencies = [](BeamElement element, int elements) {
     rotor::Options o = test::uniform_shaft(0.6, 0.06, elements);
     o.element = element;
     for (int n = 0; n < elements; ++n) {
@@ -97,8 +97,9 @@ TEST(Tapered, FamiliesConvergeToTheSameFrequencies) {
     }
     return rotor::natural_frequencies(MPI_COMM_WORLD, o, {1, elements + 1}, 2);
   };
-  const auto limit = frequencies(Element::timoshenko_hermitian, 64);
-  for (const auto& [element, order] : {std::pair{Element::timoshenko, 2.0}, {Element::timoshenko_linear, 4.0}}) {
+  const auto limit = frequencies(BeamElement::timoshenko_hermitian, 64);
+  for (const auto& [element, order] :
+       {std::pair{BeamElement::timoshenko, 2.0}, {BeamElement::timoshenko_linear, 4.0}}) {
     const auto coarse = frequencies(element, 20), fine = frequencies(element, 40);
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_GE(std::log2((coarse[k] - limit[k]) / (fine[k] - limit[k])), order - 0.15) << k;

@@ -20,7 +20,7 @@ system::Train machine() {
   system::Train t;
   t.gravity = 0;
   t.rotor.material.modulus = {{293.15, 2.05e11}};
-  t.rotor.element = rotor::Element::timoshenko_linear;
+  t.rotor.element = rotor::BeamElement::timoshenko_linear;
   for (int k = 0; k < 20; ++k) {
     rotor::Segment s;
     s.length = 0.015;

@@ -221,7 +221,7 @@ TEST(ReductionErrorsBrief, NamesTheFreedomsThatAreEnough) {
 TEST(ElementConvergenceBrief, SaysHowFarFrequenciesMove) {
   ElementConvergence study;
   study.options.parts = {1, 2};
-  study.options.elements = {rotor::Element::rayleigh};
+  study.options.elements = {rotor::BeamElement::rayleigh};
   study.options.count = 1;
   study.options.condition = false;
   StudyResult result;

@@ -64,8 +64,8 @@ TEST(ShaftBars, CoverWavesAlongTheShaft) {
 // Pinned ends, Timoshenko (1922): E I b^4 - m w^2 - j (1 + E/(kappa G)) b^2 w^2 + m j/(kappa G A) w^4 = 0, b = k pi/L,
 // with the mass m and the rotary inertia j per length.
 TEST(ShaftBars, CoverBendingOnPins) {
-  for (const rotor::Element element :
-       {rotor::Element::rayleigh, rotor::Element::timoshenko, rotor::Element::timoshenko_linear})
+  for (const rotor::BeamElement element :
+       {rotor::BeamElement::rayleigh, rotor::BeamElement::timoshenko, rotor::BeamElement::timoshenko_linear})
     for (const int n : meshes) {
       rotor::Options shaft = test::uniform_shaft(length, 0.05, n, e, density);
       shaft.element = element;
@@ -74,7 +74,7 @@ TEST(ShaftBars, CoverBendingOnPins) {
       std::vector<double> exact;
       for (int k = 1; k <= n; ++k) {
         const double b = k * pi / length, stiff = e * inertia * std::pow(b, 4);
-        if (element == rotor::Element::rayleigh) {
+        if (element == rotor::BeamElement::rayleigh) {
           exact.push_back(std::sqrt(stiff / (m + j * b * b)));
           continue;
         }

@@ -21,7 +21,7 @@ namespace {
 // A shaft with a disc, 20 mm thick and 0.4 m long, on linear bearings that are not isotropic.
 enum class Kept { all, real_modes, complex_modes };
 
-system::Train small_machine(rotor::Element element, double internal_damping, Kept kept) {
+system::Train small_machine(rotor::BeamElement element, double internal_damping, Kept kept) {
   system::Train t;
   rotor::Segment s;
   s.length = 0.05;
@@ -63,7 +63,7 @@ std::vector<spectral::Mode> modes(const system::Train& t, double speed) {
 }  // namespace
 
 TEST(ShaftModels, DerivativesPassTheTaylorTest) {
-  using enum rotor::Element;
+  using enum rotor::BeamElement;
   for (const auto& [element, internal, kept] : {std::tuple{timoshenko, 1e-4, Kept::all},
                                                 {timoshenko, 1e-4, Kept::real_modes},
                                                 {timoshenko, 1e-6, Kept::complex_modes},
@@ -93,8 +93,8 @@ TEST(ShaftModels, DerivativesPassTheTaylorTest) {
 
 // The same machine by elements of order four and six. Little damping: much makes the highest modes creep instead.
 TEST(ShaftModels, ElementsWithInnerFreedomsGiveTheSameModes) {
-  const auto linear = modes(small_machine(rotor::Element::timoshenko_linear, 1e-8, Kept::all), 500),
-             hermitian = modes(small_machine(rotor::Element::timoshenko_hermitian, 1e-8, Kept::all), 500);
+  const auto linear = modes(small_machine(rotor::BeamElement::timoshenko_linear, 1e-8, Kept::all), 500),
+             hermitian = modes(small_machine(rotor::BeamElement::timoshenko_hermitian, 1e-8, Kept::all), 500);
   for (std::size_t k = 0; k < 4; ++k) {
     ASSERT_GT(linear[k].lambda.imag(), 10);
     EXPECT_LT(std::abs(linear[k].lambda - hermitian[k].lambda), 1e-3 * std::abs(hermitian[k].lambda)) << k;
@@ -104,7 +104,7 @@ TEST(ShaftModels, ElementsWithInnerFreedomsGiveTheSameModes) {
 // The trial rotor as a machine: stable below the threshold of internal damping, unstable above.
 TEST(ShaftModels, InternalDampingDestabilisesAboveItsThreshold) {
   const auto trial = reference::trial_rotor::read();
-  system::Train t = small_machine(rotor::Element::timoshenko, trial.internal_damping, Kept::all);
+  system::Train t = small_machine(rotor::BeamElement::timoshenko, trial.internal_damping, Kept::all);
   rotor::Segment s;
   s.length = s.outer_mass_diameter = 0.015;
   t.rotor.segments.assign(20, s);
@@ -131,8 +131,8 @@ TEST(ShaftModels, InternalDampingDestabilisesAboveItsThreshold) {
 
 // With all its modes a rotor reduced in state space is the whole one: modes, and the state under the weight.
 TEST(ShaftModels, InStateSpaceAllModesAreTheWholeShaft) {
-  const system::Train whole = small_machine(rotor::Element::timoshenko, 1e-6, Kept::all);
-  system::Train small = small_machine(rotor::Element::timoshenko, 1e-6, Kept::complex_modes);
+  const system::Train whole = small_machine(rotor::BeamElement::timoshenko, 1e-6, Kept::all);
+  system::Train small = small_machine(rotor::BeamElement::timoshenko, 1e-6, Kept::complex_modes);
   small.rotor.reduction.modes = 16;
   small.rotor.reduction.speed = 500;  // that of the shape under the weight, across which internal damping acts
   const auto a = modes(whole, 500), b = modes(small, 500);
@@ -147,7 +147,7 @@ TEST(ShaftModels, InStateSpaceAllModesAreTheWholeShaft) {
 // Where its damping varies, its modes do: a new rotor. The rows of the structure are those of the residual.
 TEST(ShaftModels, InStateSpaceParametersAndBlocksAgree) {
   const auto at = [](double beta) {
-    system::Train t = small_machine(rotor::Element::timoshenko, 1e-6, Kept::complex_modes);
+    system::Train t = small_machine(rotor::BeamElement::timoshenko, 1e-6, Kept::complex_modes);
     t.rotor.stiffness_damping = beta;
     return t;
   };

@@ -8,7 +8,7 @@ namespace whirl::rotor {
 
 [[nodiscard]] std::span<const deck::Name<Options::Type>> names(Options::Type);
 [[nodiscard]] std::span<const deck::Name<Shear>> names(Shear);
-[[nodiscard]] std::span<const deck::Name<Element>> names(Element);
+[[nodiscard]] std::span<const deck::Name<BeamElement>> names(BeamElement);
 [[nodiscard]] std::span<const deck::Name<LossFrame>> names(LossFrame);
 [[nodiscard]] std::span<const deck::Name<Reduction::Type>> names(Reduction::Type);
 

@@ -29,23 +29,23 @@ struct ElementMatrices {
 };
 
 /// Inner freedoms of an element per plane.
-[[nodiscard]] constexpr int n_inner(Element element) {
-  return element == Element::timoshenko_linear ? 2 : element == Element::timoshenko_hermitian ? 4 : 0;
+[[nodiscard]] constexpr int n_inner(BeamElement element) {
+  return element == BeamElement::timoshenko_linear ? 2 : element == BeamElement::timoshenko_hermitian ? 4 : 0;
 }
 
 /// Shear that an element has: none of the Rayleigh beam.
 [[nodiscard]] constexpr Shear shear_of(const Options& options) {
-  return options.element == Element::rayleigh ? Shear::rigid : options.shear;
+  return options.element == BeamElement::rayleigh ? Shear::rigid : options.shear;
 }
 
 /// Matrices of an element. Those without inner freedoms in closed form (below); those with inner freedoms by Gauss
 /// quadrature, which is exact here. They need a shear parameter that is not zero.
-[[nodiscard]] ElementMatrices element_matrices(const Beam& beam, Element element);
+[[nodiscard]] ElementMatrices element_matrices(const Beam& beam, BeamElement element);
 
 /// The same of a segment, which may be tapered: then by Gauss quadrature along it with the shapes of the element with
 /// the section half way, which keeps the order of the frequencies but is not exact at rest. Throws as make_beam does.
 [[nodiscard]] ElementMatrices element_matrices(const Segment& segment, const Material& material, Shear shear,
-                                               Element element);
+                                               BeamElement element);
 
 /// The same of a segment of a shaft, counted from 0: of its beam, or of the coupling in its place, which has n = 4.
 /// With the halves as rigid arms the offset of the axes half way is u2 - u1 - L (s1 + s2)/2, their angle s2 - s1.

@@ -65,7 +65,7 @@ enum class Shear {
 };
 
 /// Which beam element a segment is.
-enum class Element {
+enum class BeamElement {
   rayleigh,             // cubic, no shear: Phi = 0
   timoshenko,           // one shear angle, that of the static solution without load on the span
   timoshenko_linear,    // shear angle and curvature each linear and independent: two inner freedoms
@@ -115,7 +115,7 @@ struct Options {
   std::vector<Coupling> couplings{};
   Material material;
   Shear shear = Shear::cowper_solid;
-  Element element = Element::timoshenko;
+  BeamElement element = BeamElement::timoshenko;
   // 1-based nodes where forces from outside act (films, unbalance), so that shear force or bending moment may jump;
   // those of discs and steps need not be named. No key of a deck; only timoshenko_hermitian asks for it.
   std::vector<int> joints{};

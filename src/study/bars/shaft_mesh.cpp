@@ -15,8 +15,8 @@
 
 namespace whirl::study {
 
-double order_of_shaft(rotor::Element element) {
-  return element == rotor::Element::timoshenko ? 2 : 4;
+double order_of_shaft(rotor::BeamElement element) {
+  return element == rotor::BeamElement::timoshenko ? 2 : 4;
 }
 
 bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout) {

@@ -14,7 +14,7 @@ namespace whirl::study {
 
 /// Order at which frequencies of a shaft of these elements converge: four, but two with the default one, whose shear
 /// angle is that of the static solution. Source: the elements' table (room rotor), measured.
-[[nodiscard]] double order_of_shaft(rotor::Element element);
+[[nodiscard]] double order_of_shaft(rotor::BeamElement element);
 
 /// Whether bars are wanted, and the machine has a shaft of beams.
 [[nodiscard]] bool has_shaft_mesh(const system::Machine& machine, const LayoutOptions& layout);

@@ -25,10 +25,10 @@ namespace {
 
 using Complex = std::complex<double>;
 
-system::Train divided(system::Train train, int parts, rotor::Element element) {
+system::Train divided(system::Train train, int parts, rotor::BeamElement element) {
   train = with_cut_shaft(std::move(train), parts);
   train.rotor.element = element;
-  if (element == rotor::Element::timoshenko_hermitian) {
+  if (element == rotor::BeamElement::timoshenko_hermitian) {
     for (const system::Support& s : train.supports) train.rotor.joints.push_back(s.node);
     for (const system::StaticLoad& l : train.loads) train.rotor.joints.push_back(l.node);
     for (const system::Element& e : train.elements) {
@@ -115,7 +115,7 @@ double order(double coarse, double middle, double fine, double ratio) {
   return std::isfinite(p) ? p : io::no_value;
 }
 
-std::string name_of(rotor::Element element) {
+std::string name_of(rotor::BeamElement element) {
   for (const auto& n : rotor::names(element))
     if (n.value == element) return std::string(n.name);
   return {};
@@ -145,7 +145,7 @@ StudyResult ElementConvergence::run(Context& context) {
   Pieces pieces(results, context.resume);
   std::size_t ready = 0;
   const auto compute = [&](std::size_t i) {
-    const rotor::Element element = options.elements[i / meshes];
+    const rotor::BeamElement element = options.elements[i / meshes];
     const system::Train train = divided(given, options.parts[i % meshes], element);
     system::RotorSystem system(layout.space, train, options.speed.value);
     Walker walker(system);
@@ -258,7 +258,7 @@ io::Brief ElementConvergence::brief(const StudyResult& result, std::span<const i
     orders.rows[k].emplace_back(std::to_string(k + 1));
   }
   const std::string first = name_of(options.elements.front());
-  for (const rotor::Element element : options.elements) {
+  for (const rotor::BeamElement element : options.elements) {
     const std::string name = name_of(element);
     const io::Group& table = all.group(name);
     const std::vector<double>&n = table.reals("elements"), &error = table.reals("error");

@@ -30,8 +30,8 @@ void describe(deck::Description<ElementConvergenceOptions>& d) {
 void ElementConvergence::validate(const system::Machine& machine, const deck::Report& report) const {
   if (machine.rotor.type == rotor::Options::Type::rigid) report.fail("", "a rigid rotor has no elements");
   for (std::size_t i = 0; i < options.elements.size(); ++i)
-    if (machine.rotor.shear == rotor::Shear::rigid && options.elements[i] != rotor::Element::rayleigh &&
-        options.elements[i] != rotor::Element::timoshenko)
+    if (machine.rotor.shear == rotor::Shear::rigid && options.elements[i] != rotor::BeamElement::rayleigh &&
+        options.elements[i] != rotor::BeamElement::timoshenko)
       report.fail(fmt::format("elements.{}", i + 1), "a shaft whose sections are rigid in shear has no such element");
   if (machine.rotor.reduction.type != rotor::Reduction::Type::none)
     report.fail("",

@@ -9,10 +9,10 @@ namespace whirl::study {
 
 struct ElementConvergenceOptions {
   std::string name;
-  deck::Quantity speed;                                           ///< [rad/s]
-  std::vector<int> parts{1, 2, 4};                                ///< into which every segment is cut
-  std::vector<rotor::Element> elements{rotor::Element::rayleigh,  ///< side by side
-                                       rotor::Element::timoshenko_linear};
+  deck::Quantity speed;                                                   ///< [rad/s]
+  std::vector<int> parts{1, 2, 4};                                        ///< into which every segment is cut
+  std::vector<rotor::BeamElement> elements{rotor::BeamElement::rayleigh,  ///< side by side
+                                           rotor::BeamElement::timoshenko_linear};
   int count = 10;         ///< modes, those of lowest frequency
   bool condition = true;  ///< condition numbers of the matrices
 };
