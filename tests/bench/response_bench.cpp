@@ -1,4 +1,4 @@
-// Unbalance response of the full train (750 coordinates, fixed bearing coefficients) at 100 speeds: FrequencyResponse
+// Unbalance response of the full train (750 coordinates, fixed bearing coefficients) at 100 speeds: FrequencySolver
 // from the matrices of the System on, against a plain loop of complex sparse LU over M, C, G, K extracted beforehand.
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 #include "support/train_system.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"
 
@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
   core::Vector x = core::make_vector(PETSC_COMM_SELF, s.local_size(), PETSC_DETERMINE), rest = core::duplicate(x.get());
   std::vector<Eigen::VectorXcd> ours(kSpeeds), plain(kSpeeds);
   const bench::Timing response = bench::least(PETSC_COMM_SELF, runs, [&] {
-    solve::FrequencyResponse solver(s);
+    solve::FrequencySolver solver(s);
     std::vector<double> right(static_cast<std::size_t>(2 * s.size()), 0.0), amplitude;
     for (int k = 0; k < kSpeeds; ++k) {
       s.set_parameter(speed_at(k));
@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
 
   fmt::print("{} coordinates, {} speeds            wall ms    cpu ms\n", s.coordinates(), kSpeeds);
   fmt::print("assembly of the system           {:9.2f} {:9.2f}\n", 1e3 * assembly.wall, 1e3 * assembly.processor);
-  fmt::print("FrequencyResponse                {:9.2f} {:9.2f}\n", 1e3 * response.wall, 1e3 * response.processor);
+  fmt::print("FrequencySolver                  {:9.2f} {:9.2f}\n", 1e3 * response.wall, 1e3 * response.processor);
   fmt::print("plain loop of Eigen::SparseLU    {:9.2f} {:9.2f}\n", 1e3 * loop.wall, 1e3 * loop.processor);
   fmt::print("largest relative difference {:.1e}\n", difference);
   fmt::print("ratio to the plain loop: {:.2f} (response), {:.2f} (assembly and response)\n", response.wall / loop.wall,

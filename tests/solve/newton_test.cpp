@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "branch_support.hpp"
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 
 using namespace whirl;
 using test::Column;
@@ -116,7 +116,7 @@ TEST(FrequencyResponse, OfAnOscillatorInFirstOrderForm) {
       return f;
     });
     s.set_scales(Eigen::Vector4d(1e-3, 1e-2, 1, 10), Eigen::Vector4d(1, 2, 3, 4));
-    solve::FrequencyResponse response(s);
+    solve::FrequencySolver response(s);
     const core::Vector x = s.vector(Eigen::Vector4d::Zero());
     for (const double w : {0.4, 1.7}) {
       // Force (1, -0.5 i) on the masses: (K - w^2 M + i w D) z = b.
@@ -149,7 +149,7 @@ TEST(FrequencyResponse, OfEquationsThatStandInAnotherOrder) {
     f << xdot(1) + 3.0 * x(1), 2.0 * xdot(0) + x(0);
     return f;
   });
-  solve::FrequencyResponse response(s);
+  solve::FrequencySolver response(s);
   const core::Vector x = s.vector(Eigen::Vector2d::Zero());
   PetscInt begin = 0, end = 0;
   core::check(VecGetOwnershipRange(x.get(), &begin, &end));

@@ -1,6 +1,6 @@
 // The linear response solves its own equations, also those that are eliminated.
 
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ void solves_its_equations(bool guyan) {
       right[static_cast<std::size_t>(2 * i + 1)] = scale[i] * std::cos(0.7 * (begin + i));
     }
   }
-  solve::FrequencyResponse response(s);
+  solve::FrequencySolver response(s);
   core::Matrix jx = s.make_jacobian(), jd = s.make_jacobian();
   for (const double omega : {0.0, 150.0, 377.0}) {  // at rest the pattern of values is thinner
     s.set_parameter(200 + omega);

@@ -5,7 +5,7 @@
 #include "whirl/core/error.hpp"
 #include "whirl/core/index.hpp"
 #include "whirl/core/petsc.hpp"
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 
 namespace whirl::solve {
 

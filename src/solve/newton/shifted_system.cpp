@@ -8,7 +8,7 @@
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/shell.hpp"
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 
 namespace whirl::solve {
 

@@ -12,7 +12,7 @@
 #include "study/growth.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/rounded.hpp"
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 
 namespace whirl::study {
 

@@ -7,7 +7,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/common.hpp"
 #include "study/linear/response_record.hpp"
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
 
 namespace whirl::study {
@@ -39,7 +39,7 @@ public:
 private:
   system::RotorSystem system_;
   Walker walker_;
-  solve::FrequencyResponse solver_;
+  solve::FrequencySolver solver_;
   std::vector<int> nodes_;
 };
 

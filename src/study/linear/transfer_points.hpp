@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 #include "whirl/study/linear/frequency_response.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -60,7 +60,7 @@ private:
   [[nodiscard]] std::vector<double> load(const TransferInput& input) const;
   core::Vector x_;  // where it is linearised
   system::RotorSystem& system_;
-  solve::FrequencyResponse solver_;
+  solve::FrequencySolver solver_;
   std::vector<TransferOutput> outputs_;
   std::vector<std::vector<double>> loads_;  // per input, this rank's rows as real and imaginary parts
 };

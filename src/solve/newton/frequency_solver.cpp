@@ -1,4 +1,4 @@
-#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_solver.hpp"
 
 #include "solve/newton/eliminated_response.hpp"
 #include "solve/newton/shifted_system.hpp"
@@ -7,7 +7,7 @@ namespace whirl::solve {
 
 using core::check;
 
-FrequencyResponse::FrequencyResponse(problem::System& system) : system_(system) {
+FrequencySolver::FrequencySolver(problem::System& system) : system_(system) {
   if (core::size_of(system.comm()) > 1) {
     shifted_ = std::make_unique<ShiftedSystem>(system);
     return;
@@ -21,9 +21,9 @@ FrequencyResponse::FrequencyResponse(problem::System& system) : system_(system) 
   jd_ = system.make_jacobian();
 }
 
-FrequencyResponse::~FrequencyResponse() = default;
+FrequencySolver::~FrequencySolver() = default;
 
-void FrequencyResponse::linearise(Vec x) {
+void FrequencySolver::linearise(Vec x) {
   if (shifted_) {
     shifted_->linearise(x);
     return;
@@ -34,20 +34,20 @@ void FrequencyResponse::linearise(Vec x) {
   eliminated_->linearise(jx_.get(), jd_.get(), rows.data(), columns.data());
 }
 
-void FrequencyResponse::factorise(double omega) {
+void FrequencySolver::factorise(double omega) {
   if (shifted_)
     shifted_->factorise(omega);
   else
     eliminated_->factorise(omega);
 }
 
-void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude) {
+void FrequencySolver::solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude) {
   linearise(x);
   factorise(omega);
   solve(right, amplitude);
 }
 
-void FrequencyResponse::solve(const std::vector<double>& right, std::vector<double>& amplitude) {
+void FrequencySolver::solve(const std::vector<double>& right, std::vector<double>& amplitude) {
   if (eliminated_) {
     eliminated_->solve(right, amplitude);
     return;

@@ -19,10 +19,10 @@ inline constexpr const char* singular_at_frequency =
 ///
 /// On one rank the kinematic equations q' = v are eliminated exactly and the rest is factorised as a complex sparse
 /// matrix, analysed once. On several ranks it is a ShiftedSystem.
-class FrequencyResponse {
+class FrequencySolver {
 public:
-  explicit FrequencyResponse(problem::System& system);
-  ~FrequencyResponse();
+  explicit FrequencySolver(problem::System& system);
+  ~FrequencySolver();
   /// Takes the derivatives at the equilibrium x and the system's parameter. Collective.
   void linearise(Vec x);
   /// Factorises the matrix for a frequency [rad/s]. Collective; throws core::NotConverged if it is singular.
