@@ -91,7 +91,7 @@ private:
   void spread(const GasMesh& mesh, bool ring);
 
   OrificeRow row_;
-  thermal::Gas gas_;
+  thermal::PerfectGas gas_;
   double temperature_, viscosity_;
   Kind kind_;
   double depth_, rim_, capacity_ = 0;

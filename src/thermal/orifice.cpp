@@ -16,7 +16,7 @@ MassFlow shape(double k, double b) {
 
 }  // namespace
 
-MassFlow nozzle(const Gas& gas, double supply, double temperature, double pressure) {
+MassFlow nozzle(const PerfectGas& gas, double supply, double temperature, double pressure) {
   constexpr double width = 1e-3;
   const double k = gas.heat_ratio, factor = std::sqrt(2 * k / ((k - 1) * gas.gas_constant * temperature));
   const double b = pressure / supply;
