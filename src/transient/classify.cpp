@@ -34,7 +34,7 @@ std::optional<Verdict> passing(const Evidence& e, int period, const char* turns)
   for (int k = 1; k < period && static_cast<std::size_t>(k) <= e.fading.size(); ++k)
     if (const double left = e.fading[static_cast<std::size_t>(k - 1)]; left < lasting)
       return Verdict{
-          Kind::unsettled, 0, "unsettled",
+          MotionKind::unsettled, 0, "unsettled",
           fmt::format(
               "returns after {} {}, but its distance after {} dies out, by a factor of {:.2g} over half the record",
               period, turns, k, left)};
@@ -74,7 +74,7 @@ std::optional<Verdict> drifting(const Evidence& e) {
   constexpr double least = 0.01;
   const Trend t = trend(e);
   if (!(std::abs(t.change) > std::max(least, t.uncertainty))) return std::nullopt;
-  return Verdict{Kind::unsettled, 0, "unsettled", t.text()};
+  return Verdict{MotionKind::unsettled, 0, "unsettled", t.text()};
 }
 
 std::string distance(const Evidence& e, int period) {
@@ -87,39 +87,39 @@ Verdict forced(const Evidence& e, int period) {
   if (const auto verdict = passing(e, period, "revolutions")) return *verdict;
   if (period > 0) {
     if (first == Sign::positive)
-      return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
-    return {Kind::periodic, period, fmt::format("period-{}", period), distance(e, period)};
+      return {MotionKind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
+    return {MotionKind::periodic, period, fmt::format("period-{}", period), distance(e, period)};
   }
   if (const auto verdict = drifting(e)) return *verdict;
   const std::string none = fmt::format("no return within {} revolutions", e.returns.size());
-  if (!known(e)) return {Kind::unsettled, 0, "unsettled", none + ", no exponents of known uncertainty"};
-  if (first == Sign::positive) return {Kind::chaotic, 0, "chaotic", none + ", " + largest(e)};
+  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", none + ", no exponents of known uncertainty"};
+  if (first == Sign::positive) return {MotionKind::chaotic, 0, "chaotic", none + ", " + largest(e)};
   if (first == Sign::zero)
-    return {Kind::quasi_periodic, 0, "quasi_periodic", none + ", " + largest(e) + ", " + trend(e).text()};
-  return {Kind::unsettled, 0, "unsettled", none + " although deviations die out: " + largest(e)};
+    return {MotionKind::quasi_periodic, 0, "quasi_periodic", none + ", " + largest(e) + ", " + trend(e).text()};
+  return {MotionKind::unsettled, 0, "unsettled", none + " although deviations die out: " + largest(e)};
 }
 
 Verdict autonomous(const Evidence& e, int period) {
   if (const auto verdict = passing(e, period, "crossings of the section")) return *verdict;
   if (period > 0) {
     if (known(e) && sign_of(e, 0) == Sign::positive)
-      return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
-    return {Kind::limit_cycle, period, "limit_cycle",
+      return {MotionKind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
+    return {MotionKind::limit_cycle, period, "limit_cycle",
             fmt::format("period-{} on its section: {}", period, distance(e, period))};
   }
   if (const auto verdict = drifting(e)) return *verdict;
   const std::string none =
       e.returns.empty() ? "" : fmt::format("no return within {} crossings of the section, ", e.returns.size());
-  if (!known(e)) return {Kind::unsettled, 0, "unsettled", none + "no exponents of known uncertainty"};
-  if (sign_of(e, 0) == Sign::positive) return {Kind::chaotic, 0, "chaotic", none + largest(e)};
+  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", none + "no exponents of known uncertainty"};
+  if (sign_of(e, 0) == Sign::positive) return {MotionKind::chaotic, 0, "chaotic", none + largest(e)};
   int zeros = 0;
   for (std::size_t k = 0; k < e.exponents.size(); ++k) zeros += sign_of(e, k) == Sign::zero;
   const std::string count = fmt::format("{}{} zero exponent{}, {}", none, zeros, zeros == 1 ? "" : "s", largest(e));
-  if (zeros == 1 && !e.returns.empty()) return {Kind::unsettled, 0, "unsettled", count};
-  if (zeros == 1) return {Kind::limit_cycle, 0, "limit_cycle", count};
+  if (zeros == 1 && !e.returns.empty()) return {MotionKind::unsettled, 0, "unsettled", count};
+  if (zeros == 1) return {MotionKind::limit_cycle, 0, "limit_cycle", count};
   if (zeros > 1)
-    return {Kind::quasi_periodic, 0, "quasi_periodic", count + (e.course.empty() ? "" : ", " + trend(e).text())};
-  return {Kind::unsettled, 0, "unsettled", none + "moves although all deviations die out: " + largest(e)};
+    return {MotionKind::quasi_periodic, 0, "quasi_periodic", count + (e.course.empty() ? "" : ", " + trend(e).text())};
+  return {MotionKind::unsettled, 0, "unsettled", none + "moves although all deviations die out: " + largest(e)};
 }
 
 }  // namespace
@@ -163,22 +163,22 @@ std::vector<double> course_of_returns(const std::vector<std::vector<double>>& po
 
 Verdict classify(const Evidence& e) {
   if (e.driven)
-    return {Kind::driven, 0, "driven",
+    return {MotionKind::driven, 0, "driven",
             "external forces act that do not follow the shaft's angle: returns at that angle say nothing" +
                 (known(e) ? ", " + largest(e) : "")};
   if (e.size < e.rest) {
     if (!e.exponents.empty() && sign_of(e, 0) == Sign::positive)
-      return {Kind::unsettled, 0, "unsettled", "at rest, but a disturbance grows: " + largest(e)};
+      return {MotionKind::unsettled, 0, "unsettled", "at rest, but a disturbance grows: " + largest(e)};
     if (!e.grows.empty())
-      return {Kind::unsettled, 0, "unsettled",
+      return {MotionKind::unsettled, 0, "unsettled",
               fmt::format("at rest at an unstable equilibrium, where a disturbance grows: {}", e.grows)};
-    return {Kind::fixed_point, 0, "fixed_point",
+    return {MotionKind::fixed_point, 0, "fixed_point",
             fmt::format("moves by {:.1e}{}", e.size, known(e) ? ", " + largest(e) : "")};
   }
   const auto back = std::find_if(e.returns.begin(), e.returns.end(), [&](double d) { return d < e.return_tolerance; });
   const int period = back == e.returns.end() ? 0 : static_cast<int>(back - e.returns.begin()) + 1;
   Verdict verdict = e.forced ? forced(e, period) : autonomous(e, period);
-  if (verdict.kind == Kind::unsettled && !e.grows.empty())
+  if (verdict.kind == MotionKind::unsettled && !e.grows.empty())
     verdict.reason += "; about the equilibrium a disturbance grows: " + e.grows;
   return verdict;
 }

@@ -142,7 +142,7 @@ TEST(Verdicts, ASlowTransientIsNoPeriodTwo) {
   const auto transient = evidence(-0.97);
   EXPECT_GT(transient.returns[0], transient.return_tolerance);
   EXPECT_LT(transient.returns[1], transient.return_tolerance);
-  EXPECT_EQ(classify(transient).kind, Kind::unsettled);
+  EXPECT_EQ(classify(transient).kind, MotionKind::unsettled);
   EXPECT_EQ(classify(evidence(-1)).name, "period-2");
 }
 
@@ -165,19 +165,19 @@ TEST(Verdicts, ASpiralIsNoTorus) {
     e.uncertainties = {0.01};
     return classify(e);
   };
-  EXPECT_EQ(verdict(record(1.0003, 400)).kind, Kind::unsettled) << "11 % in 350 revolutions";
-  EXPECT_EQ(verdict(record(0.9997, 400)).kind, Kind::unsettled);
-  EXPECT_EQ(verdict(record(1.00015, 400)).kind, Kind::unsettled) << "5 %";
-  EXPECT_EQ(verdict(record(1.00001, 400)).kind, Kind::quasi_periodic) << "0.4 %";
-  EXPECT_EQ(verdict(record(1, 400)).kind, Kind::quasi_periodic);
-  EXPECT_EQ(verdict(record(1.0003, 60)).kind, Kind::quasi_periodic) << "too few to tell";
-  EXPECT_EQ(verdict(record(1.6, 20)).kind, Kind::unsettled) << "few are enough where all grows";
+  EXPECT_EQ(verdict(record(1.0003, 400)).kind, MotionKind::unsettled) << "11 % in 350 revolutions";
+  EXPECT_EQ(verdict(record(0.9997, 400)).kind, MotionKind::unsettled);
+  EXPECT_EQ(verdict(record(1.00015, 400)).kind, MotionKind::unsettled) << "5 %";
+  EXPECT_EQ(verdict(record(1.00001, 400)).kind, MotionKind::quasi_periodic) << "0.4 %";
+  EXPECT_EQ(verdict(record(1, 400)).kind, MotionKind::quasi_periodic);
+  EXPECT_EQ(verdict(record(1.0003, 60)).kind, MotionKind::quasi_periodic) << "too few to tell";
+  EXPECT_EQ(verdict(record(1.6, 20)).kind, MotionKind::unsettled) << "few are enough where all grows";
   const auto course = course_of_returns(record(1.001, 801));
   ASSERT_EQ(course.size(), 8U);
   EXPECT_NEAR(course[7] / course[0], std::pow(1.001, 700), 5e-3) << "the angle within a piece is not the same in all";
   std::vector<std::vector<double>> hops;
   for (double x = 0.3; hops.size() < 400; x = 3.9 * x * (1 - x)) hops.push_back({x});
-  EXPECT_EQ(verdict(hops).kind, Kind::quasi_periodic) << "no direction";
+  EXPECT_EQ(verdict(hops).kind, MotionKind::quasi_periodic) << "no direction";
 }
 
 TEST(Verdicts, FollowFromTheEvidence) {
@@ -191,54 +191,54 @@ TEST(Verdicts, FollowFromTheEvidence) {
   e.returns = {1e-6, 1e-7};
   EXPECT_EQ(classify(e).name, "period-1");
   e.exponents = {0.5, -5};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.returns = {0.5, 0.2};
-  EXPECT_EQ(classify(e).kind, Kind::chaotic);
+  EXPECT_EQ(classify(e).kind, MotionKind::chaotic);
   e.exponents = {0.05, -5};
-  EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);
+  EXPECT_EQ(classify(e).kind, MotionKind::quasi_periodic);
   e.exponents = {-0.5, -5};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.uncertainties[0] = INFINITY;  // too few revolutions to tell
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.uncertainties[0] = 0.1;
   e.exponents = {};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.returns = {1e-6};
   EXPECT_EQ(classify(e).name, "period-1");
 
   e.forced = false;
   e.exponents = {0.01, -3};
   e.returns = {0.4, 1e-6};  // to a section
-  EXPECT_EQ(classify(e).kind, Kind::limit_cycle);
+  EXPECT_EQ(classify(e).kind, MotionKind::limit_cycle);
   EXPECT_EQ(classify(e).period, 2);
   EXPECT_EQ(classify(e).name, "limit_cycle");
   e.fading = {0.5, 1};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.fading = {};
   e.exponents = {1, -3};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.exponents = {};  // returns are evidence enough
-  EXPECT_EQ(classify(e).kind, Kind::limit_cycle);
+  EXPECT_EQ(classify(e).kind, MotionKind::limit_cycle);
   e.exponents = {0.01, -3};
   e.returns = {0.4, 0.2};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.exponents = {0.01, -0.01, -3};
   e.uncertainties = {0.1, 0.1, 0.1};
-  EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);
+  EXPECT_EQ(classify(e).kind, MotionKind::quasi_periodic);
   e.returns = {};  // no section: the exponents alone
   e.exponents = {0.01, -3};
-  EXPECT_EQ(classify(e).kind, Kind::limit_cycle);
+  EXPECT_EQ(classify(e).kind, MotionKind::limit_cycle);
   EXPECT_EQ(classify(e).period, 0);
   e.exponents = {0.01, -0.01, -3};
   e.uncertainties = {0.1, 0.1, 0.1};
-  EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);
+  EXPECT_EQ(classify(e).kind, MotionKind::quasi_periodic);
   e.exponents = {1, 0, -3};
-  EXPECT_EQ(classify(e).kind, Kind::chaotic);
+  EXPECT_EQ(classify(e).kind, MotionKind::chaotic);
   e.exponents = {-1, -2, -3};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
   e.size = 1e-9;
-  EXPECT_EQ(classify(e).kind, Kind::fixed_point);
+  EXPECT_EQ(classify(e).kind, MotionKind::fixed_point);
   EXPECT_FALSE(classify(e).reason.empty());
   e.exponents = {1, -2, -3};
-  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  EXPECT_EQ(classify(e).kind, MotionKind::unsettled);
 }

@@ -8,7 +8,7 @@
 
 namespace whirl::transient {
 
-enum class Kind { fixed_point, periodic, limit_cycle, quasi_periodic, chaotic, unsettled, driven };
+enum class MotionKind { fixed_point, periodic, limit_cycle, quasi_periodic, chaotic, unsettled, driven };
 
 /// What is known of a motion after its transient.
 struct Evidence {
@@ -26,7 +26,7 @@ struct Evidence {
 };
 
 struct Verdict {
-  Kind kind = Kind::unsettled;
+  MotionKind kind = MotionKind::unsettled;
   int period = 0;      ///< revolutions after which a periodic motion repeats itself; returns of a limit cycle's section
   std::string name;    ///< fixed_point, period-1, period-2, ..., limit_cycle, quasi_periodic, chaotic, unsettled,
                        ///< driven

@@ -195,9 +195,9 @@ private:
   // What grows about the place where the motion rests; of one that does not settle about the equilibrium, which may be
   // why.
   void look_for_growth(io::StudySummary& summary) {
-    const transient::Kind kind = record_.verdict().kind;
-    const bool rests = kind == transient::Kind::fixed_point;
-    if (!rests && kind != transient::Kind::unsettled) return;
+    const transient::MotionKind kind = record_.verdict().kind;
+    const bool rests = kind == transient::MotionKind::fixed_point;
+    if (!rests && kind != transient::MotionKind::unsettled) return;
     std::string reason;
     std::optional<Growth> growth;
     if (rests) {
@@ -229,7 +229,7 @@ private:
     group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
     put_places(group, context_.machine, system_);
     record_.write(group, summary);
-    if (const auto verdict = record_.verdict(); verdict.kind == transient::Kind::unsettled)
+    if (const auto verdict = record_.verdict(); verdict.kind == transient::MotionKind::unsettled)
       warn_first(summary, "the motion has not settled: " + verdict.reason);
     if (OpenBores bores(context_.machine); !bores.empty()) {
       record_.for_samples([&](std::size_t place, double x, double y) { bores.see(place, x, y, 0); });

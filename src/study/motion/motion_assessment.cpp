@@ -39,7 +39,7 @@ void MotionRecord::write_section(io::Group& group, io::StudySummary& summary, co
   if (const auto e = evidence(); section_.count() == 0 && e.size >= e.rest)
     summary.warnings.push_back(fmt::format("the motion never crosses its section {}", section_text_));
   if (section_.count() > 1) summary.set("section.interval", section_.interval(1)[0], "s");
-  if (verdict.kind != transient::Kind::limit_cycle || verdict.period == 0) return;
+  if (verdict.kind != transient::MotionKind::limit_cycle || verdict.period == 0) return;
   const auto [time, scatter] = section_.interval(verdict.period);
   summary.set("period.time", time, "s", {{"uncertainty", scatter}});
 }
@@ -80,7 +80,7 @@ std::array<double, 2> MotionRecord::whirl_tone(std::size_t place, double rotatio
 
 void MotionRecord::write_rotation(io::Group& group, io::StudySummary& summary,
                                   const transient::Verdict& verdict) const {
-  const bool torus = verdict.kind == transient::Kind::quasi_periodic, locked = verdict.period > 1;
+  const bool torus = verdict.kind == transient::MotionKind::quasi_periodic, locked = verdict.period > 1;
   if ((!torus && !locked) || (!forced_ && section_text_.empty())) return;
   std::vector<double> value, uncertainty, disorder;
   std::vector<std::string> reason;

@@ -216,7 +216,7 @@ void MotionRecord::write_exponents(io::Group& group, io::StudySummary& summary) 
   }
   // Below chaos it is the number of frequencies, which the verdict knows better.
   const double dimension = transient::kaplan_yorke_dimension(e.exponents);
-  if (verdict().kind == transient::Kind::chaotic && std::isfinite(dimension))
+  if (verdict().kind == transient::MotionKind::chaotic && std::isfinite(dimension))
     summary.set("dimension.kaplan_yorke", dimension, "1");
   auto& g = group.child("exponents");
   g.put("value", e.exponents, "1/s", "Lyapunov exponents, the largest first");
