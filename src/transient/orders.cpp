@@ -10,7 +10,7 @@
 namespace whirl::transient {
 namespace {
 
-std::span<const double> piece(const ByAngle& signal, const Pieces& pieces, int k) {
+std::span<const double> piece(const ByAngle& signal, const RecordPieces& pieces, int k) {
   const auto first = static_cast<std::size_t>(k) * static_cast<std::size_t>(pieces.advance * signal.per_revolution);
   return signal.samples.subspan(first, static_cast<std::size_t>(pieces.revolutions * signal.per_revolution));
 }
@@ -29,15 +29,15 @@ int revolutions(const ByAngle& signal) {
 
 }  // namespace
 
-int count(const Pieces& pieces, int revolutions) {
+int count(const RecordPieces& pieces, int revolutions) {
   return revolutions < pieces.revolutions ? 0 : (revolutions - pieces.revolutions) / pieces.advance + 1;
 }
 
-double middle(const Pieces& pieces, int k) {
+double middle(const RecordPieces& pieces, int k) {
   return k * pieces.advance + pieces.revolutions / 2.0;
 }
 
-std::vector<std::complex<double>> order_track(const ByAngle& signal, double order, const Pieces& pieces) {
+std::vector<std::complex<double>> order_track(const ByAngle& signal, double order, const RecordPieces& pieces) {
   const double lines = order * pieces.revolutions;
   core::require(std::abs(lines - std::round(lines)) < 1e-9 && 2 * order < signal.per_revolution,
                 "an order is a line of a piece, and below half the samples of a revolution");
@@ -62,7 +62,7 @@ std::vector<std::complex<double>> order_track(const ByAngle& signal, double orde
   return out;
 }
 
-std::vector<std::vector<double>> waterfall(const ByAngle& signal, double highest, const Pieces& pieces) {
+std::vector<std::vector<double>> waterfall(const ByAngle& signal, double highest, const RecordPieces& pieces) {
   std::vector<std::vector<double>> out;
   const auto lines = static_cast<std::size_t>(std::floor(highest * pieces.revolutions * (1 + 1e-12))) + 1;
   for (int k = 0; k < count(pieces, revolutions(signal)); ++k) {

@@ -92,7 +92,7 @@ TEST(Orders, ConstantOnesAreExact) {
   const std::vector<Part> parts{{0.5, 2, 0.3, 0}, {1, 1, -2, 0}, {2, 0.1, 1.2, 0}};
   const auto signal = by_angle(40, 16, parts);
   for (const Window w : {Window::none, Window::hann}) {
-    const Pieces pieces{8, 3, w};
+    const RecordPieces pieces{8, 3, w};
     EXPECT_EQ(count(pieces, 40), 11);
     for (const Part& p : parts) {
       const auto track = order_track({signal, 16}, p.order, pieces);
@@ -107,7 +107,7 @@ TEST(Orders, ConstantOnesAreExact) {
 // Amplitudes that change evenly count as in the middle of a piece, to what a piece's ends leave over.
 TEST(Orders, ChangingOnesAreThoseOfTheMiddle) {
   const auto signal = by_angle(60, 32, {{1, 1, 0.5, 0.02}, {0.5, 3, 0, -0.03}});
-  const Pieces pieces{8, 1, Window::hann};
+  const RecordPieces pieces{8, 1, Window::hann};
   const auto track = order_track({signal, 32}, 1, pieces);
   for (std::size_t k = 0; k < track.size(); ++k)
     EXPECT_NEAR(std::abs(track[k]), 1 + 0.02 * middle(pieces, static_cast<int>(k)), 1.5e-3);
@@ -120,7 +120,7 @@ TEST(Orders, PiecesAreAboutTheirMiddles) {
   std::vector<double> rising;
   const int samples = 8;
   for (int k = 1; k <= 20 * samples; ++k) rising.push_back(3 + 0.25 * k / samples);
-  const Pieces pieces{4, 2, Window::hann};
+  const RecordPieces pieces{4, 2, Window::hann};
   const auto mean = order_track({rising, samples}, 0, pieces);
   ASSERT_EQ(mean.size(), 9U);
   for (std::size_t k = 0; k < mean.size(); ++k)
@@ -144,7 +144,7 @@ TEST(Orders, AChirpKeepsItsOrder) {
     const double t = end * k / (samples * revolutions);
     time_wise.push_back(signal((from + acceleration * t / 2) * t));
   }
-  const Pieces pieces{16, 16, Window::hann};
+  const RecordPieces pieces{16, 16, Window::hann};
   const auto rows = waterfall({angle_wise, samples}, 4, pieces), smeared = waterfall({time_wise, samples}, 4, pieces);
   ASSERT_EQ(rows.size(), 4U);
   for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -18,25 +18,27 @@ struct ByAngle {
 };
 
 /// Short pieces of a record, `revolutions` long, one beginning `advance` revolutions after the other.
-struct Pieces {
+struct RecordPieces {
   int revolutions = 16;
   int advance = 8;
   Window window = Window::hann;
 };
 /// How many whole pieces a record of so many revolutions has.
-[[nodiscard]] int count(const Pieces& pieces, int revolutions);
+[[nodiscard]] int count(const RecordPieces& pieces, int revolutions);
 /// The middle of piece `k` [revolutions since the record began].
-[[nodiscard]] double middle(const Pieces& pieces, int k);
+[[nodiscard]] double middle(const RecordPieces& pieces, int k);
 
 /// c of each piece, where the signal's part of this order is Re(c exp(i order angle)): |c| is its amplitude 0-peak,
 /// arg c its phase ahead of the shaft angle (which counts on from the beginning of the record, whole turns of a
 /// fractional order too). order x revolutions must be a whole number, and the order less than half the samples of a
 /// revolution, else core::Error. Exact where the amplitudes are constant over a piece and other orders lie on lines of
 /// 1/revolutions, outside the window's main lobe.
-[[nodiscard]] std::vector<std::complex<double>> order_track(const ByAngle& signal, double order, const Pieces& pieces);
+[[nodiscard]] std::vector<std::complex<double>> order_track(const ByAngle& signal, double order,
+                                                            const RecordPieces& pieces);
 
 /// Amplitudes 0-peak [piece][line] of the orders k/revolutions up to `highest`; the first line is the magnitude of the
 /// mean.
-[[nodiscard]] std::vector<std::vector<double>> waterfall(const ByAngle& signal, double highest, const Pieces& pieces);
+[[nodiscard]] std::vector<std::vector<double>> waterfall(const ByAngle& signal, double highest,
+                                                         const RecordPieces& pieces);
 
 }  // namespace whirl::transient

@@ -17,7 +17,7 @@ std::vector<double> signal(const AngleRecord& r, std::size_t place, std::size_t 
 }
 
 // Where the pieces stand.
-void put_middles(io::Group& g, const AngleRecord& r, const transient::Pieces& pieces) {
+void put_middles(io::Group& g, const AngleRecord& r, const transient::RecordPieces& pieces) {
   std::vector<double> revolution, speed, time;
   for (int k = 0; k < transient::count(pieces, r.revolutions()); ++k) {
     revolution.push_back(transient::middle(pieces, k));
@@ -37,7 +37,7 @@ int AngleRecord::revolutions() const {
 }
 
 void write_orders(io::Group& group, const AngleRecord& r, const OrderOptions& o) {
-  const transient::Pieces pieces{o.revolutions, o.advance, o.window};
+  const transient::RecordPieces pieces{o.revolutions, o.advance, o.window};
   const auto n = static_cast<std::size_t>(transient::count(pieces, r.revolutions()));
   if (n == 0) return;
   auto& g = group.child("orders");
@@ -65,7 +65,7 @@ void write_orders(io::Group& group, const AngleRecord& r, const OrderOptions& o)
 }
 
 void write_waterfall(io::Group& group, const AngleRecord& r, const WaterfallOptions& o) {
-  const transient::Pieces pieces{o.revolutions, o.advance, o.window};
+  const transient::RecordPieces pieces{o.revolutions, o.advance, o.window};
   const auto n = static_cast<std::size_t>(transient::count(pieces, r.revolutions()));
   if (n == 0) return;
   auto& g = group.child("waterfall");
