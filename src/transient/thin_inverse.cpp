@@ -60,7 +60,8 @@ void ThinInverse::factorise_film(const ThinOperator& a, std::size_t which, Film&
   const VectorXd rows = point_.residual_scale().segment(first, own.count).cwiseInverse();
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(t.states.size() + t.rates.size());
-  const auto add = [&](const std::vector<problem::Place>& places, const std::vector<double>& values, double factor) {
+  const auto add = [&](const std::vector<problem::EntryPlace>& places, const std::vector<double>& values,
+                       double factor) {
     for (std::size_t e = 0; e < places.size(); ++e)
       entries.emplace_back(places[e].row, places[e].column,
                            factor * values[e] * rows(places[e].row) * columns(places[e].column));

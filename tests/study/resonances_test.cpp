@@ -173,7 +173,7 @@ Response response_of(double speed, double height) {
 TEST(HiddenResonances, AreToldOfWithPeaksThatTheSpeedsAboutThemShow) {
   const std::vector<Response> curve{response_of(100, 1e-6), response_of(200, 5e-6), response_of(300, 1e-6),
                                     response_of(500, 1e-6)};
-  const std::vector<Place> places = places_of({1}, {});
+  const std::vector<ResponsePlace> places = places_of({1}, {});
   const std::vector<Response> falling{response_of(220, 4e-6), response_of(240, 3e-6), response_of(260, 2e-6)};
   EXPECT_TRUE(shown_by(curve, falling, {{240, 50}}, places, "rad/s").empty());
   const std::vector<Response> top{response_of(399, 2e-6), response_of(400, 3e-6), response_of(401, 2e-6)};

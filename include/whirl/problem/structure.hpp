@@ -12,7 +12,7 @@ namespace whirl::problem {
 using SparseBlock = Eigen::SparseMatrix<double>;
 
 /// Where a derivative has an entry.
-struct Place {
+struct EntryPlace {
   int row, column;
 };
 
@@ -21,7 +21,7 @@ struct OwnStates {
   Eigen::Index first = 0, count = 0;         ///< among the own states of the system
   Eigen::Index first_input = 0, inputs = 0;  ///< among the inputs
   Eigen::Index first_force = 0, forces = 0;  ///< among the forces
-  std::vector<Place> states, rates;          ///< entries of dg/ds and dg/ds', rows and columns counted from `first`
+  std::vector<EntryPlace> states, rates;     ///< entries of dg/ds and dg/ds', rows and columns counted from `first`
   /// g is linear in s but for the set of full nodes: a whole step of Newton's method on s alone finds the next set.
   bool settles = false;
 };

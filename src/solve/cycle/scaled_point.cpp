@@ -222,7 +222,8 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
       jxdot.block(0, first, n, film.count).noalias() = -all.b.middleCols(film.first_force, film.forces) *
                                                        t.force_rates *
                                                        state_scale_.segment(first, film.count).asDiagonal();
-    const auto add = [&](const std::vector<problem::Place>& places, const std::vector<double>& values, MatrixXd& out) {
+    const auto add = [&](const std::vector<problem::EntryPlace>& places, const std::vector<double>& values,
+                         MatrixXd& out) {
       for (std::size_t e = 0; e < places.size(); ++e) {
         const Index row = first + places[e].row, column = first + places[e].column;
         out(row, column) += values[e] * state_scale_(column) / residual_scale_(row);

@@ -64,10 +64,10 @@ bool StructuredRate::find_places() {
     told += own.count;
     if (own.inputs > max_inputs || own.first != told - own.count || static_cast<Index>(own.rates.size()) != own.count)
       return false;
-    for (const problem::Place& p : own.rates)
+    for (const problem::EntryPlace& p : own.rates)
       if (p.row != p.column) return false;
     std::vector<Index> shift_of;
-    for (const problem::Place& p : own.states) {
+    for (const problem::EntryPlace& p : own.states) {
       Index shift = p.column - p.row;
       if (2 * shift > own.count) shift -= own.count;
       if (2 * shift <= -own.count) shift += own.count;
@@ -125,7 +125,7 @@ void StructuredRate::follow_rates() {
       const Index row = own.first + own.rates[e].row;
       inverse_(row) = -1 / (rates[e] * states(row));
     }
-    for (const problem::Place& p : own.states)
+    for (const problem::EntryPlace& p : own.states)
       factors_.push_back(inverse_(own.first + p.row) * states(own.first + p.column));
   }
 }

@@ -33,8 +33,9 @@ bool ends_on_flank(const ResponseCurve& curve, bool last) {
 
 namespace {
 
-bool has_peak_near(const std::vector<Response>& curve, const std::vector<Place>& places, double speed, double apart) {
-  return std::ranges::any_of(places, [&](const Place& place) {
+bool has_peak_near(const std::vector<Response>& curve, const std::vector<ResponsePlace>& places, double speed,
+                   double apart) {
+  return std::ranges::any_of(places, [&](const ResponsePlace& place) {
     const ResponseCurve of = curve_at(curve, place.of, place.at);
     return std::ranges::any_of(of.tops(), [&](std::size_t k) { return std::abs(of.speed[k] - speed) < apart; });
   });
@@ -42,7 +43,7 @@ bool has_peak_near(const std::vector<Response>& curve, const std::vector<Place>&
 
 }  // namespace
 
-std::vector<std::string> open_ends(const std::vector<Response>& curve, const std::vector<Place>& places,
+std::vector<std::string> open_ends(const std::vector<Response>& curve, const std::vector<ResponsePlace>& places,
                                    const Spectra& spectra, const std::string& unit) {
   constexpr double this_side = 0.1, beyond = 0.5;
   std::vector<std::string> out;
@@ -54,7 +55,7 @@ std::vector<std::string> open_ends(const std::vector<Response>& curve, const std
     const double here = has_peak_near(curve, places, end, 2 * this_side * end) ? 0 : this_side;
     if (!resonance_near(known->second, end, last ? here : beyond, last ? beyond : here)) continue;
     std::vector<std::string> where;
-    for (const Place& place : places)
+    for (const ResponsePlace& place : places)
       if (ends_on_flank(curve_at(curve, place.of, place.at), last)) where.push_back(place.label);
     if (where.empty()) continue;
     out.push_back(fmt::format("the amplitude {} at the {} of the range, {:.6g} {} ({}): a peak may lie {} it",

@@ -19,8 +19,9 @@ namespace whirl::study {
 /// A sentence for each end of the range at which places are on a flank, and the machine has a resonance to which that
 /// may belong: among the eigenvalues there, up to half of the speed beyond, or up to a tenth on this side if no peak is
 /// known within a fifth. Nothing where these are not known.
-[[nodiscard]] std::vector<std::string> open_ends(const std::vector<Response>& curve, const std::vector<Place>& places,
-                                                 const Spectra& spectra, const std::string& unit);
+[[nodiscard]] std::vector<std::string> open_ends(const std::vector<Response>& curve,
+                                                 const std::vector<ResponsePlace>& places, const Spectra& spectra,
+                                                 const std::string& unit);
 
 /// What the beams of a shaft cannot do in a response up to `last` [rad/s], a line each: their mesh is too coarse, or
 /// beam theory ends.

@@ -16,8 +16,8 @@ constexpr double one_resonance = 1e-3;
 
 }  // namespace
 
-std::vector<Place> places_of(const std::vector<int>& nodes, const std::vector<std::string>& bearings) {
-  std::vector<Place> out;
+std::vector<ResponsePlace> places_of(const std::vector<int>& nodes, const std::vector<std::string>& bearings) {
+  std::vector<ResponsePlace> out;
   for (std::size_t k = 0; k < nodes.size(); ++k)
     out.push_back({fmt::format("node {}", nodes[k]), fmt::format("node.{}", nodes[k]), &Response::nodes, k});
   for (std::size_t b = 0; b < bearings.size(); ++b)
@@ -31,9 +31,9 @@ std::vector<std::size_t> tops_of(const ResponseCurve& curve) {
   return tops;
 }
 
-void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, const std::vector<Place>& places,
+void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, const std::vector<ResponsePlace>& places,
               bool settled) {
-  for (const Place& place : places) {
+  for (const ResponsePlace& place : places) {
     const ResponseCurve of = curve_at(curve, place.of, place.at);
     for (const std::size_t k : of.tops()) {
       const double top = of.speed[k];
@@ -55,7 +55,7 @@ std::string unsettled(const ResponseCurve& curve, std::size_t top, const Peak& p
 }
 
 std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector<Response>& more,
-                                  const std::vector<Resonance>& hidden, const std::vector<Place>& places,
+                                  const std::vector<Resonance>& hidden, const std::vector<ResponsePlace>& places,
                                   const std::string& unit) {
   curve.insert(curve.end(), more.begin(), more.end());
   std::ranges::sort(curve, {}, &Response::speed);
@@ -64,7 +64,7 @@ std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector
   for (const Resonance& r : hidden) {
     double height = 0;
     std::string where;
-    for (const Place& place : places) {
+    for (const ResponsePlace& place : places) {
       const ResponseCurve of = curve_at(curve, place.of, place.at);
       for (const std::size_t k : of.tops())
         if (std::abs(of.speed[k] - r.speed) < 2 * r.width && is_more(of.speed[k]) && of.height[k] > height)

@@ -10,18 +10,19 @@
 namespace whirl::study {
 
 /// A shaft node, or the journal of a bearing.
-struct Place {
+struct ResponsePlace {
   std::string label, head;  ///< in the list of peaks, and of its values
   Places of;
   std::size_t at;
 };
-[[nodiscard]] std::vector<Place> places_of(const std::vector<int>& nodes, const std::vector<std::string>& bearings);
+[[nodiscard]] std::vector<ResponsePlace> places_of(const std::vector<int>& nodes,
+                                                   const std::vector<std::string>& bearings);
 
 /// The peaks of a curve by falling height; those without a height are the highest.
 [[nodiscard]] std::vector<std::size_t> tops_of(const ResponseCurve& curve);
 
 /// Adds the speeds of the peaks of all places, of one resonance one; where `settled` only those whose place is.
-void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, const std::vector<Place>& places,
+void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, const std::vector<ResponsePlace>& places,
               bool settled);
 
 /// Why the numbers of a peak are not settled; empty if they are, and of one that is too narrow for a height, which says
@@ -32,7 +33,7 @@ void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, c
 /// In words the resonances of `hidden` at which the response has a peak at one of `more` speeds, with the height that
 /// it has there if it is damped.
 [[nodiscard]] std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector<Response>& more,
-                                                const std::vector<Resonance>& hidden, const std::vector<Place>& places,
-                                                const std::string& unit);
+                                                const std::vector<Resonance>& hidden,
+                                                const std::vector<ResponsePlace>& places, const std::string& unit);
 
 }  // namespace whirl::study

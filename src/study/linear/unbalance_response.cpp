@@ -112,7 +112,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   auto& results = context.results;
   auto& summary = results.summary();
   const auto names = names_of_bearings(context.machine);
-  const std::vector<Place> places = places_of(nodes, names);
+  const std::vector<ResponsePlace> places = places_of(nodes, names);
   // Responses at several speeds, shared between the groups of ranks.
   std::size_t ready = 0, calls = 0;
   Pieces pieces(results, context.resume);
@@ -170,7 +170,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   const auto add_rounds = [&](int passes, const auto& ask) {
     for (int pass = 0; pass < passes; ++pass) {
       std::vector<double> speeds;
-      for (const Place& place : places) {
+      for (const ResponsePlace& place : places) {
         const ResponseCurve of = curve_at(curve, place.of, place.at);
         for (const std::size_t k : of.tops()) ask(of, k, pass, speeds);
       }
@@ -239,7 +239,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   if (options.refine)
     (void)has_answer([&] {
       std::vector<double> flanks;
-      for (const Place& place : places) {
+      for (const ResponsePlace& place : places) {
         const ResponseCurve of = curve_at(curve, place.of, place.at);
         for (const std::size_t k : of.tops()) ask_for_flanks(of, k, flanks);
       }
@@ -369,7 +369,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       }
                       for (const Response& r : all) {
                         out.height.emplace_back();
-                        for (const Place& place : places)
+                        for (const ResponsePlace& place : places)
                           out.height.back().push_back((r.*place.of)[place.at].semi_major());
                       }
                       return out;
