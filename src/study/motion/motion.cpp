@@ -252,7 +252,7 @@ private:
   bool forced_;
   MotionRecord record_;
   Watch watch_;
-  std::optional<Plane> plane_;
+  std::optional<SectionPlane> plane_;
   std::optional<transient::Section> section_;
   FilmLimit films_;
   double margin_ = 0;  // of the films at the last sample

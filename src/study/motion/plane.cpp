@@ -34,7 +34,7 @@ StateAt state_at(std::string_view name, const std::vector<std::string>& places, 
   throw core::InputError(fmt::format("there is no coordinate '{}'{}", name, deck::did_you_mean_one_of(name, all)));
 }
 
-double Plane::height(system::Plant& system, Vec x) const {
+double SectionPlane::height(system::Plant& system, Vec x) const {
   const bool by_number = std::any_of(terms_.begin(), terms_.end(), [](const Term& t) { return t.of.place < 0; });
   const bool by_place = std::any_of(terms_.begin(), terms_.end(), [](const Term& t) { return t.of.place >= 0; });
   const std::vector<double> whole = by_number ? system.gather(x) : std::vector<double>();
@@ -52,7 +52,7 @@ double Plane::height(system::Plant& system, Vec x) const {
   return sum;
 }
 
-std::string Plane::text(const system::ShownPlaces& places) const {
+std::string SectionPlane::text(const system::ShownPlaces& places) const {
   std::string sum, unit = "1";
   for (const Term& t : terms_) {
     if (!sum.empty()) sum += " + ";
@@ -68,8 +68,8 @@ std::string Plane::text(const system::ShownPlaces& places) const {
   return fmt::format("{} = {:.6g}{}", sum, value_, unit == "1" ? "" : " " + unit);
 }
 
-Plane plane_of(const SectionOptions& options, const system::ShownPlaces& places, PetscInt states) {
-  std::vector<Plane::Term> terms;
+SectionPlane plane_of(const SectionOptions& options, const system::ShownPlaces& places, PetscInt states) {
+  std::vector<SectionPlane::Term> terms;
   for (const PlaneTerm& t : options.terms()) terms.push_back({state_at(t.of, places.names, states), t.factor});
   return {std::move(terms), options.value.value};
 }
@@ -90,7 +90,7 @@ void Watch::see(const std::vector<system::PlaceState>& shown) {
   ++count_;
 }
 
-Plane Watch::choose(const system::ShownPlaces& places) const {
+SectionPlane Watch::choose(const system::ShownPlaces& places) const {
   std::size_t best = 0;
   double most = -1;
   for (std::size_t i = 0; i < sum_.size(); ++i) {

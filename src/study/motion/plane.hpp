@@ -19,13 +19,13 @@ struct StateAt {
 [[nodiscard]] StateAt state_at(std::string_view name, const std::vector<std::string>& places, PetscInt states);
 
 /// sum factor x coordinate - value, whose sign changes where the plane is crossed.
-class Plane {
+class SectionPlane {
 public:
   struct Term {
     StateAt of;
     double factor = 1;
   };
-  Plane(std::vector<Term> terms, double value) : terms_(std::move(terms)), value_(value) {}
+  SectionPlane(std::vector<Term> terms, double value) : terms_(std::move(terms)), value_(value) {}
   /// Of a state in SI. Collective, the same on all ranks.
   [[nodiscard]] double height(system::Plant& system, Vec x) const;
   /// "B1.y = 1.2e-05 m".
@@ -37,7 +37,7 @@ private:
   std::vector<Term> terms_;
   double value_;
 };
-[[nodiscard]] Plane plane_of(const SectionOptions& options, const system::ShownPlaces& places, PetscInt states);
+[[nodiscard]] SectionPlane plane_of(const SectionOptions& options, const system::ShownPlaces& places, PetscInt states);
 
 /// Watches where a motion is, to choose a plane that it crosses: the mean of the coordinate x or y that travels most,
 /// per clearance.
@@ -45,7 +45,7 @@ class Watch {
 public:
   void see(const std::vector<system::PlaceState>& shown);
   [[nodiscard]] bool seen() const { return count_ > 0; }
-  [[nodiscard]] Plane choose(const system::ShownPlaces& places) const;
+  [[nodiscard]] SectionPlane choose(const system::ShownPlaces& places) const;
   void save(io::Group& group) const;
   void load(const io::Group& group);
 
