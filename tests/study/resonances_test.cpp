@@ -165,18 +165,18 @@ TEST(HiddenResonances, MayBeMissingWhereASpectrumFails) {
   EXPECT_TRUE(gave_up);
 }
 
-Response response_of(double speed, double height) {
+ResponseAtSpeed response_of(double speed, double height) {
   return {speed, height, {{height, {0, height}}}, {}, {}};
 }
 
 // Speeds about a resonance show it: a peak that the curve has beside them is none of theirs.
 TEST(HiddenResonances, AreToldOfWithPeaksThatTheSpeedsAboutThemShow) {
-  const std::vector<Response> curve{response_of(100, 1e-6), response_of(200, 5e-6), response_of(300, 1e-6),
-                                    response_of(500, 1e-6)};
+  const std::vector<ResponseAtSpeed> curve{response_of(100, 1e-6), response_of(200, 5e-6), response_of(300, 1e-6),
+                                           response_of(500, 1e-6)};
   const std::vector<ResponsePlace> places = places_of({1}, {});
-  const std::vector<Response> falling{response_of(220, 4e-6), response_of(240, 3e-6), response_of(260, 2e-6)};
+  const std::vector<ResponseAtSpeed> falling{response_of(220, 4e-6), response_of(240, 3e-6), response_of(260, 2e-6)};
   EXPECT_TRUE(shown_by(curve, falling, {{240, 50}}, places, "rad/s").empty());
-  const std::vector<Response> top{response_of(399, 2e-6), response_of(400, 3e-6), response_of(401, 2e-6)};
+  const std::vector<ResponseAtSpeed> top{response_of(399, 2e-6), response_of(400, 3e-6), response_of(401, 2e-6)};
   const auto words = shown_by(curve, top, {{400, 150}}, places, "rad/s");
   ASSERT_EQ(words.size(), 1U);
   EXPECT_EQ(words[0], "400 rad/s (3 um at least, node 1)");

@@ -206,17 +206,17 @@ TEST(OpenEnds, AreFlanksOfPeaks) {
 // Behind a peak that is listed a response rises steeply from a dip: no peak beyond belongs to that, unless the machine
 // has a resonance there.
 TEST(OpenEnds, AreNoneOfTheDipBehindAPeak) {
-  std::vector<Response> curve;
+  std::vector<ResponseAtSpeed> curve;
   for (int k = 0; k <= 60; ++k) {
     const double s = 200 + 2 * k, x = 0.5 * (s - 280);
     const std::complex<double> motion = 1.0 / std::complex<double>(x, 1) - 0.06;
     curve.push_back({s, 1, {{motion, 0}}, {}, {}});
   }
-  const auto said = [&](std::vector<Response> part, const std::vector<std::complex<double>>& modes) {
+  const auto said = [&](std::vector<ResponseAtSpeed> part, const std::vector<std::complex<double>>& modes) {
     const double end = part.back().speed;
     return open_ends(part, places_of({1}, {}), {{end, modes}}, "rad/s");
   };
-  EXPECT_TRUE(ends_on_flank(curve_at(curve, &Response::nodes, 0), true));
+  EXPECT_TRUE(ends_on_flank(curve_at(curve, &ResponseAtSpeed::nodes, 0), true));
   EXPECT_TRUE(said(curve, {{-2, 300}, {-2, 500}}).empty());
   EXPECT_EQ(said(curve, {{-2, 300}, {-2, 400}}).size(), 1U);
   curve.resize(35);

@@ -10,23 +10,24 @@
 
 namespace whirl::study {
 
-bool stands_on_pole(const Response& here, const Spectra& spectra, const ResonanceSearch& search,
-                    const std::function<std::vector<Response>(const std::vector<double>&)>& at) {
+bool stands_on_pole(const ResponseAtSpeed& here, const Spectra& spectra, const ResonanceSearch& search,
+                    const std::function<std::vector<ResponseAtSpeed>(const std::vector<double>&)>& at) {
   constexpr double smaller = 0.1;
   const auto known = spectra.find(here.speed);
   if (known == spectra.end() ||
       undamped_resonances(known->second, here.speed * (1 - at_pole), here.speed * (1 + at_pole), search).empty())
     return false;
-  const std::vector<Response> beside = at({here.speed * (1 + least_step)});
+  const std::vector<ResponseAtSpeed> beside = at({here.speed * (1 + least_step)});
   return !beside.empty() && beside.front().largest < smaller * here.largest;
 }
 
-void put_lost(std::vector<Response>& curve, const LostSpeeds& lost, io::StudySummary& summary,
+void put_lost(std::vector<ResponseAtSpeed>& curve, const LostSpeeds& lost, io::StudySummary& summary,
               const std::string& unit) {
   std::vector<std::string> words, reasons;
   for (const auto& [speed, why] : lost) {
-    const auto at = std::ranges::lower_bound(curve, speed, {}, &Response::speed);
-    const Response none = Response::without_answer(speed, curve.front().nodes.size(), curve.front().bearings.size());
+    const auto at = std::ranges::lower_bound(curve, speed, {}, &ResponseAtSpeed::speed);
+    const ResponseAtSpeed none =
+        ResponseAtSpeed::without_answer(speed, curve.front().nodes.size(), curve.front().bearings.size());
     if (at != curve.end() && at->speed == speed)
       *at = none;
     else

@@ -33,7 +33,7 @@ bool ends_on_flank(const ResponseCurve& curve, bool last) {
 
 namespace {
 
-bool has_peak_near(const std::vector<Response>& curve, const std::vector<ResponsePlace>& places, double speed,
+bool has_peak_near(const std::vector<ResponseAtSpeed>& curve, const std::vector<ResponsePlace>& places, double speed,
                    double apart) {
   return std::ranges::any_of(places, [&](const ResponsePlace& place) {
     const ResponseCurve of = curve_at(curve, place.of, place.at);
@@ -43,7 +43,7 @@ bool has_peak_near(const std::vector<Response>& curve, const std::vector<Respons
 
 }  // namespace
 
-std::vector<std::string> open_ends(const std::vector<Response>& curve, const std::vector<ResponsePlace>& places,
+std::vector<std::string> open_ends(const std::vector<ResponseAtSpeed>& curve, const std::vector<ResponsePlace>& places,
                                    const Spectra& spectra, const std::string& unit) {
   constexpr double this_side = 0.1, beyond = 0.5;
   std::vector<std::string> out;

@@ -19,7 +19,7 @@ namespace whirl::study {
 /// A sentence for each end of the range at which places are on a flank, and the machine has a resonance to which that
 /// may belong: among the eigenvalues there, up to half of the speed beyond, or up to a tenth on this side if no peak is
 /// known within a fifth. Nothing where these are not known.
-[[nodiscard]] std::vector<std::string> open_ends(const std::vector<Response>& curve,
+[[nodiscard]] std::vector<std::string> open_ends(const std::vector<ResponseAtSpeed>& curve,
                                                  const std::vector<ResponsePlace>& places, const Spectra& spectra,
                                                  const std::string& unit);
 

@@ -54,7 +54,7 @@ Responder::Responder(const Context& context, const Layout& layout, const Unbalan
   for (int& node : nodes_) node = rotor::node_after(context.machine.rotor, node, parts_of(mesh));
 }
 
-Response Responder::at(double speed) {
+ResponseAtSpeed Responder::at(double speed) {
   Vec x = walker_.at(speed);
   PetscInt begin = 0, end = 0;
   core::check(VecGetOwnershipRange(x, &begin, &end));
@@ -84,7 +84,7 @@ Response Responder::at(double speed) {
       throw core::NotConverged(solve::singular_at_frequency);
     shaft[part] = system_.shaft(state[part].data(), 0, false);
   }
-  Response r;
+  ResponseAtSpeed r;
   r.speed = speed;
   for (std::size_t k = 0; k < shaft[0].size(); ++k)
     if (!rotor::is_slope(rotor::freedom_at(static_cast<int>(k))))

@@ -28,7 +28,7 @@ public:
             std::vector<int> nodes, const FilmMesh& mesh = {});
 
   /// Throws core::NotConverged where there is no equilibrium, and at an undamped resonance.
-  [[nodiscard]] Response at(double speed);
+  [[nodiscard]] ResponseAtSpeed at(double speed);
   [[nodiscard]] SpectrumAt spectrum(double speed);
   [[nodiscard]] system::ShownPlaces places() const { return system_.places(); }
   [[nodiscard]] Trail trail() { return walker_.trail(); }

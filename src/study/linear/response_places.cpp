@@ -19,9 +19,9 @@ constexpr double one_resonance = 1e-3;
 std::vector<ResponsePlace> places_of(const std::vector<int>& nodes, const std::vector<std::string>& bearings) {
   std::vector<ResponsePlace> out;
   for (std::size_t k = 0; k < nodes.size(); ++k)
-    out.push_back({fmt::format("node {}", nodes[k]), fmt::format("node.{}", nodes[k]), &Response::nodes, k});
+    out.push_back({fmt::format("node {}", nodes[k]), fmt::format("node.{}", nodes[k]), &ResponseAtSpeed::nodes, k});
   for (std::size_t b = 0; b < bearings.size(); ++b)
-    out.push_back({bearings[b] + ", journal", "bearing." + bearings[b], &Response::bearings, b});
+    out.push_back({bearings[b] + ", journal", "bearing." + bearings[b], &ResponseAtSpeed::bearings, b});
   return out;
 }
 
@@ -31,8 +31,8 @@ std::vector<std::size_t> tops_of(const ResponseCurve& curve) {
   return tops;
 }
 
-void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, const std::vector<ResponsePlace>& places,
-              bool settled) {
+void add_tops(std::vector<double>& speeds, const std::vector<ResponseAtSpeed>& curve,
+              const std::vector<ResponsePlace>& places, bool settled) {
   for (const ResponsePlace& place : places) {
     const ResponseCurve of = curve_at(curve, place.of, place.at);
     for (const std::size_t k : of.tops()) {
@@ -54,12 +54,14 @@ std::string unsettled(const ResponseCurve& curve, std::size_t top, const Peak& p
                      deck::from_si(curve.speed[top + 1], unit), unit, refined ? "" : " (refine: false)");
 }
 
-std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector<Response>& more,
+std::vector<std::string> shown_by(std::vector<ResponseAtSpeed> curve, const std::vector<ResponseAtSpeed>& more,
                                   const std::vector<Resonance>& hidden, const std::vector<ResponsePlace>& places,
                                   const std::string& unit) {
   curve.insert(curve.end(), more.begin(), more.end());
-  std::ranges::sort(curve, {}, &Response::speed);
-  const auto is_more = [&](double speed) { return std::ranges::find(more, speed, &Response::speed) != more.end(); };
+  std::ranges::sort(curve, {}, &ResponseAtSpeed::speed);
+  const auto is_more = [&](double speed) {
+    return std::ranges::find(more, speed, &ResponseAtSpeed::speed) != more.end();
+  };
   std::vector<std::string> words;
   for (const Resonance& r : hidden) {
     double height = 0;

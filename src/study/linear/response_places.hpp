@@ -22,8 +22,8 @@ struct ResponsePlace {
 [[nodiscard]] std::vector<std::size_t> tops_of(const ResponseCurve& curve);
 
 /// Adds the speeds of the peaks of all places, of one resonance one; where `settled` only those whose place is.
-void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, const std::vector<ResponsePlace>& places,
-              bool settled);
+void add_tops(std::vector<double>& speeds, const std::vector<ResponseAtSpeed>& curve,
+              const std::vector<ResponsePlace>& places, bool settled);
 
 /// Why the numbers of a peak are not settled; empty if they are, and of one that is too narrow for a height, which says
 /// so itself. `refined`: speeds were added.
@@ -32,7 +32,8 @@ void add_tops(std::vector<double>& speeds, const std::vector<Response>& curve, c
 
 /// In words the resonances of `hidden` at which the response has a peak at one of `more` speeds, with the height that
 /// it has there if it is damped.
-[[nodiscard]] std::vector<std::string> shown_by(std::vector<Response> curve, const std::vector<Response>& more,
+[[nodiscard]] std::vector<std::string> shown_by(std::vector<ResponseAtSpeed> curve,
+                                                const std::vector<ResponseAtSpeed>& more,
                                                 const std::vector<Resonance>& hidden,
                                                 const std::vector<ResponsePlace>& places, const std::string& unit);
 

@@ -11,7 +11,7 @@
 
 namespace whirl::study {
 
-std::vector<double> pack(const Response& r) {
+std::vector<double> pack(const ResponseAtSpeed& r) {
   std::vector<double> flat{r.speed, r.largest};
   for (const auto* place : {&r.nodes, &r.bearings})
     for (const NodeMotion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
@@ -19,8 +19,8 @@ std::vector<double> pack(const Response& r) {
   return flat;
 }
 
-Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings) {
-  Response r;
+ResponseAtSpeed unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings) {
+  ResponseAtSpeed r;
   r.speed = flat[0];
   r.largest = flat[1];
   for (std::size_t k = 0; k < n_nodes + n_bearings; ++k) {
@@ -31,15 +31,15 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
   return r;
 }
 
-Response Response::without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings) {
+ResponseAtSpeed ResponseAtSpeed::without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings) {
   constexpr NodeMotion none{{io::no_value, io::no_value}, {io::no_value, io::no_value}};
   return {speed, io::no_value, std::vector(n_nodes, none), std::vector(n_bearings, none),
           std::vector(n_bearings, io::no_value)};
 }
 
-ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::size_t at) {
+ResponseCurve curve_at(const std::vector<ResponseAtSpeed>& curve, Places places, std::size_t at) {
   ResponseCurve of;
-  for (const Response& r : curve) {
+  for (const ResponseAtSpeed& r : curve) {
     of.speed.push_back(r.speed);
     const double height = (r.*places)[at].semi_major();
     of.height.push_back(height > motion_rounding * r.largest ? height : 0);
@@ -47,7 +47,7 @@ ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::s
   return of;
 }
 
-void put_operating(const std::vector<std::string>& names, const std::vector<int>& nodes, const Response& r,
+void put_operating(const std::vector<std::string>& names, const std::vector<int>& nodes, const ResponseAtSpeed& r,
                    io::StudySummary& summary) {
   for (std::size_t b = 0; b < names.size(); ++b) {
     summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
@@ -57,10 +57,10 @@ void put_operating(const std::vector<std::string>& names, const std::vector<int>
     summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
 }
 
-void put_motion(io::Group& g, const std::vector<Response>& curve, Places place, const std::string& text) {
+void put_motion(io::Group& g, const std::vector<ResponseAtSpeed>& curve, Places place, const std::string& text) {
   const io::Shape shape{curve.size(), (curve.front().*place).size()};
   std::map<std::string, std::vector<double>> column;
-  for (const Response& r : curve)
+  for (const ResponseAtSpeed& r : curve)
     for (const NodeMotion& m : r.*place) {
       column["x_amplitude"].push_back(std::abs(m.x));
       column["x_phase"].push_back(std::arg(m.x));
@@ -84,17 +84,17 @@ bool too_thin(double film, double least) {
 
 }  // namespace
 
-std::string touched(const Response& r, const system::ShownPlaces& places) {
+std::string touched(const ResponseAtSpeed& r, const system::ShownPlaces& places) {
   for (std::size_t b = 0; b < r.films.size(); ++b)
     if (too_thin(r.films[b], places.least_films[b])) return places.names[b];
   return {};
 }
 
 void put_films(io::Group& group, io::StudySummary& summary, const system::ShownPlaces& places,
-               const std::vector<Response>& curve, const std::string& unit) {
+               const std::vector<ResponseAtSpeed>& curve, const std::string& unit) {
   std::vector<double> all;
   std::vector<std::int64_t> answers;
-  for (const Response& r : curve) {
+  for (const ResponseAtSpeed& r : curve) {
     const auto films = film_column(r.films, places.names.size());
     all.insert(all.end(), films.begin(), films.end());
     answers.push_back(std::isfinite(r.largest) && touched(r, places).empty() ? 1 : 0);
@@ -107,8 +107,8 @@ void put_films(io::Group& group, io::StudySummary& summary, const system::ShownP
            "smallest film thickness that the linear motion leaves, at mid-plane of films that do not tilt, not a "
            "number without a film");
   for (std::size_t b = 0; b < places.names.size(); ++b) {
-    const Response *worst = nullptr, *first = nullptr, *last = nullptr;
-    for (const Response& r : curve) {
+    const ResponseAtSpeed *worst = nullptr, *first = nullptr, *last = nullptr;
+    for (const ResponseAtSpeed& r : curve) {
       if (!std::isfinite(r.films[b])) continue;
       if (!worst || r.films[b] < worst->films[b]) worst = &r;
       if (!too_thin(r.films[b], places.least_films[b])) continue;

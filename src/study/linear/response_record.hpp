@@ -24,34 +24,34 @@ struct NodeMotion {
 };
 
 /// At one speed [rad/s].
-struct Response {
+struct ResponseAtSpeed {
   double speed = 0;
   double largest = 0;  ///< displacement anywhere on the shaft [m]
   std::vector<NodeMotion> nodes, bearings;
   std::vector<double> films;  ///< smallest thickness that the linear motion leaves each bearing [m]
 
   /// All but the speed not a number.
-  [[nodiscard]] static Response without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings);
+  [[nodiscard]] static ResponseAtSpeed without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings);
 };
-using Places = std::vector<NodeMotion> Response::*;
+using Places = std::vector<NodeMotion> ResponseAtSpeed::*;
 
-[[nodiscard]] std::vector<double> pack(const Response& r);
-[[nodiscard]] Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings);
+[[nodiscard]] std::vector<double> pack(const ResponseAtSpeed& r);
+[[nodiscard]] ResponseAtSpeed unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings);
 
 /// Semi-major axes of one place over the speeds; zero below 1e-12 of the largest displacement, where they are rounding.
-[[nodiscard]] ResponseCurve curve_at(const std::vector<Response>& curve, Places places, std::size_t at);
+[[nodiscard]] ResponseCurve curve_at(const std::vector<ResponseAtSpeed>& curve, Places places, std::size_t at);
 
 /// Puts amplitudes at the operating speed as operating.*.
-void put_operating(const std::vector<std::string>& bearings, const std::vector<int>& nodes, const Response& r,
+void put_operating(const std::vector<std::string>& bearings, const std::vector<int>& nodes, const ResponseAtSpeed& r,
                    io::StudySummary& summary);
 /// Puts columns of amplitudes and phases [speed][place].
-void put_motion(io::Group& g, const std::vector<Response>& curve, Places places, const std::string& text);
+void put_motion(io::Group& g, const std::vector<ResponseAtSpeed>& curve, Places places, const std::string& text);
 
 /// The bearing in which the linear motion leaves less film than the surfaces bear; empty where all have enough.
-[[nodiscard]] std::string touched(const Response& r, const system::ShownPlaces& places);
+[[nodiscard]] std::string touched(const ResponseAtSpeed& r, const system::ShownPlaces& places);
 /// Puts what the motions leave of the films, marks the speeds at which they leave too little, and warns of these.
 /// Linear motions know no bore: there they are none.
 void put_films(io::Group& group, io::StudySummary& summary, const system::ShownPlaces& places,
-               const std::vector<Response>& curve, const std::string& unit);
+               const std::vector<ResponseAtSpeed>& curve, const std::string& unit);
 
 }  // namespace whirl::study

@@ -36,14 +36,14 @@
 namespace whirl::study {
 namespace {
 
-std::vector<double> speeds_of(const std::vector<Response>& curve) {
+std::vector<double> speeds_of(const std::vector<ResponseAtSpeed>& curve) {
   std::vector<double> speeds;
-  for (const Response& r : curve) speeds.push_back(r.speed);
+  for (const ResponseAtSpeed& r : curve) speeds.push_back(r.speed);
   return speeds;
 }
 
-const Response& nearest(const std::vector<Response>& curve, double speed) {
-  return *std::ranges::min_element(curve, {}, [&](const Response& r) { return std::abs(r.speed - speed); });
+const ResponseAtSpeed& nearest(const std::vector<ResponseAtSpeed>& curve, double speed) {
+  return *std::ranges::min_element(curve, {}, [&](const ResponseAtSpeed& r) { return std::abs(r.speed - speed); });
 }
 
 // A peak of the list with the numbers that its bars stand on.
@@ -79,12 +79,12 @@ void take_bars(const io::StudySummary& summary, const std::string& head, io::Pea
 }
 
 // Marks the speeds at which the equilibrium is unstable: there nothing settles into the linear motion.
-void put_stability(io::Group& group, io::StudySummary& summary, const std::vector<Response>& curve,
+void put_stability(io::Group& group, io::StudySummary& summary, const std::vector<ResponseAtSpeed>& curve,
                    const StableSpeeds& stable, const std::optional<deck::Quantity>& operating,
                    const std::string& unit) {
   if (!stable.known()) return;
   std::vector<std::int64_t> numbers;
-  for (const Response& r : curve) numbers.push_back(stable.at(r.speed));
+  for (const ResponseAtSpeed& r : curve) numbers.push_back(stable.at(r.speed));
   group.child("response")
       .put("unstable_count", numbers,
            "eigenvalues that grow about the equilibrium, between the speeds counted as beside them; -1: some may be "
@@ -124,7 +124,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
                                    deck::from_si(speeds[i], unit), unit, results.seconds()));
       return packed;
     };
-    std::vector<Response> out;
+    std::vector<ResponseAtSpeed> out;
     std::size_t k = 0;
     for (auto& flat : distribute(layout, speeds.size(), compute, pieces, piece, which.trail())) {
       std::string reason = take_reason(flat);
@@ -141,28 +141,28 @@ StudyResult UnbalanceResponse::run(Context& context) {
   };
   // The same for the curve: a speed without an equilibrium is a gap of it.
   const auto rows_at = [&](const std::vector<double>& speeds) {
-    std::vector<Response> rows = at_speeds(speeds);
+    std::vector<ResponseAtSpeed> rows = at_speeds(speeds);
     for (const double speed : speeds)
       if (const auto at = lost.find(speed); at != lost.end() && at->second != solve::singular_at_frequency)
-        rows.push_back(Response::without_answer(speed, nodes.size(), names.size()));
+        rows.push_back(ResponseAtSpeed::without_answer(speed, nodes.size(), names.size()));
     return rows;
   };
   std::vector<double> grid;
   for (int k = 0; k < options.points; ++k)
     grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
-  std::vector<Response> curve = rows_at(grid);
-  if (std::ranges::all_of(curve, [](const Response& r) { return std::isnan(r.largest); }))
+  std::vector<ResponseAtSpeed> curve = rows_at(grid);
+  if (std::ranges::all_of(curve, [](const ResponseAtSpeed& r) { return std::isnan(r.largest); }))
     return results.finish(lost.begin()->second, false);
 
   // Speeds added around the peaks of each place until the parabola of 1/f^2 settles the speed to 1e-5.
-  const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
+  const auto by_speed = [](const ResponseAtSpeed& a, const ResponseAtSpeed& b) { return a.speed < b.speed; };
   std::sort(curve.begin(), curve.end(), by_speed);
   const auto add = [&](std::vector<double> speeds) {
     std::vector<double> known = speeds_of(curve);
     for (const auto& [speed, why] : lost)
       if (!std::ranges::binary_search(known, speed)) known.insert(std::ranges::upper_bound(known, speed), speed);
     speeds = worth_asking(std::move(speeds), known);
-    for (Response& r : rows_at(speeds)) curve.push_back(std::move(r));
+    for (ResponseAtSpeed& r : rows_at(speeds)) curve.push_back(std::move(r));
     std::sort(curve.begin(), curve.end(), by_speed);
     return !speeds.empty();
   };
@@ -339,11 +339,11 @@ StudyResult UnbalanceResponse::run(Context& context) {
   std::string reason;
   double operating_rounding = 0;  // [m]
   const auto take_operating = [&] {
-    const std::vector<Response> found = at_speeds({operating_speed->value});
+    const std::vector<ResponseAtSpeed> found = at_speeds({operating_speed->value});
     if (found.empty()) throw core::NotConverged(lost.at(operating_speed->value));
     if (stands_on_pole(found.front(), spectra, search, at_speeds))
       throw core::NotConverged(solve::singular_at_frequency);
-    const Response& there = found.front();
+    const ResponseAtSpeed& there = found.front();
     put_operating(names, nodes, there, summary);
     summary.set("operating_speed.answer", touched(there, shown).empty() ? 1 : 0, "1");
     operating_rounding = motion_rounding * there.largest;
@@ -360,14 +360,14 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       std::optional<Responder> other;
                       if (mesh.spacing != 1) other.emplace(context, layout, options, nodes, mesh);
                       if (operating_known) at.push_back(operating_speed->value);
-                      std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
+                      std::vector<ResponseAtSpeed> all = solve_at(other ? *other : machine, at, piece);
                       if (all.size() < at.size()) throw core::NotConverged(lost.begin()->second);
                       MeshResponse out;
                       if (operating_known) {
                         put_operating(names, nodes, all.back(), out.operating);
                         all.pop_back();
                       }
-                      for (const Response& r : all) {
+                      for (const ResponseAtSpeed& r : all) {
                         out.height.emplace_back();
                         for (const ResponsePlace& place : places)
                           out.height.back().push_back((r.*place.of)[place.at].semi_major());
@@ -381,10 +381,10 @@ StudyResult UnbalanceResponse::run(Context& context) {
     summary.peaks.push_back(p.entry);
   }
 
-  for (const Response& r : curve)
+  for (const ResponseAtSpeed& r : curve)
     if (stands_on_pole(r, spectra, search, at_speeds)) lost[r.speed] = solve::singular_at_frequency;
   const auto beside_grid = [&](double speed) { return std::ranges::find(grid, speed) == grid.end(); };
-  std::erase_if(curve, [&](const Response& r) { return lost.contains(r.speed) && beside_grid(r.speed); });
+  std::erase_if(curve, [&](const ResponseAtSpeed& r) { return lost.contains(r.speed) && beside_grid(r.speed); });
   std::erase_if(lost, [&](const auto& l) { return beside_grid(l.first); });
   put_lost(curve, lost, summary, unit);
   summary.points = static_cast<long>(curve.size() - lost.size());
@@ -403,10 +403,10 @@ StudyResult UnbalanceResponse::run(Context& context) {
   auto& response = group.child("response");
   response.put("speed", speeds_of(curve), "rad/s", "shaft speed");
   response.put("node", std::vector<std::int64_t>(nodes.begin(), nodes.end()), "shaft nodes, 1-based");
-  put_motion(response, curve, &Response::nodes, "absolute motion of the shaft");
+  put_motion(response, curve, &ResponseAtSpeed::nodes, "absolute motion of the shaft");
   response.label_each({io::node_labels(nodes)});
   put_bearings(group, context.machine);
-  put_motion(group.child("bearings"), curve, &Response::bearings, "journal relative to its pedestal");
+  put_motion(group.child("bearings"), curve, &ResponseAtSpeed::bearings, "journal relative to its pedestal");
   group.child("bearings").label_each({names_of_bearings(context.machine)});
   group.set("speed_unit", unit);
   group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
