@@ -9,15 +9,15 @@ namespace whirl::transient {
 
 using core::check;
 
-std::span<const deck::Name<Sense>> names(Sense) {
-  static constexpr deck::Name<Sense> table[] = {
-      {Sense::rising, "rising", "where the combination grows through its value"},
-      {Sense::falling, "falling", "where it falls through it"},
-      {Sense::both, "both", "wherever it passes it"}};
+std::span<const deck::Name<CrossingSense>> names(CrossingSense) {
+  static constexpr deck::Name<CrossingSense> table[] = {
+      {CrossingSense::rising, "rising", "where the combination grows through its value"},
+      {CrossingSense::falling, "falling", "where it falls through it"},
+      {CrossingSense::both, "both", "wherever it passes it"}};
   return table;
 }
 
-Section::Section(Integrator& integrator, Height height, Sense sense, Found found)
+Section::Section(Integrator& integrator, Height height, CrossingSense sense, Found found)
     : integrator_(integrator),
       height_(std::move(height)),
       sense_(sense),
@@ -30,7 +30,7 @@ Section::Section(Integrator& integrator, Height height, Sense sense, Found found
 // A point on the surface belongs to the side it came to, so that it counts once.
 bool Section::counts(double low, double high) const {
   const bool rises = low < 0 && high >= 0, falls = low >= 0 && high < 0;
-  return (rises && sense_ != Sense::falling) || (falls && sense_ != Sense::rising);
+  return (rises && sense_ != CrossingSense::falling) || (falls && sense_ != CrossingSense::rising);
 }
 
 void Section::advance(double time) {

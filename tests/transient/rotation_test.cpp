@@ -152,7 +152,7 @@ TEST(Rotation, OfTwoOscillatorsIsTheRatioOfTheirFrequencies) {
   transient::Integrator integrator(s, {1}, s.vector(Eigen::Vector4d(1, 0, 0, 1)).get(), {.tolerance = 1e-7});
   Points points;
   transient::Section section(
-      integrator, [&] { return core::gather(integrator.scaled())[1] - 0.2; }, transient::Sense::rising,
+      integrator, [&] { return core::gather(integrator.scaled())[1] - 0.2; }, transient::CrossingSense::rising,
       [&](double) {
         const auto x = core::gather(integrator.scaled());
         points.push_back({x[2], x[3]});

@@ -18,7 +18,7 @@ double entry(Vec v, int k) {
 
 // Times at which x_0 passes `value`, by a record of samples a revolution.
 std::vector<double> crossings(SmallSystem& s, const problem::Drive& drive, const Eigen::VectorXd& x, double value,
-                              transient::Sense sense, double end, int samples, double tolerance,
+                              transient::CrossingSense sense, double end, int samples, double tolerance,
                               std::vector<double>* ends = nullptr, std::vector<double>* heights = nullptr) {
   transient::Integrator integrator(s, drive, s.vector(x).get(), {.tolerance = tolerance});
   std::vector<double> found;
@@ -41,8 +41,8 @@ TEST(Section, IsFoundWhereTheMotionCrosses) {
   double last = 0;
   for (const double tolerance : core::size_of(MPI_COMM_WORLD) == 1 ? std::vector{1e-6, 1e-9} : std::vector{1e-5}) {
     std::vector<double> heights;
-    const auto t = crossings(s, {1.3}, test::LinearOscillator::exact(0, 1.3), value, transient::Sense::rising, end, 48,
-                             tolerance, nullptr, &heights);
+    const auto t = crossings(s, {1.3}, test::LinearOscillator::exact(0, 1.3), value, transient::CrossingSense::rising,
+                             end, 48, tolerance, nullptr, &heights);
     ASSERT_EQ(t.size(), 3U);
     double worst = 0;
     for (std::size_t k = 0; k < t.size(); ++k) {
@@ -65,8 +65,9 @@ TEST(Section, CountsTheSensesAskedFor) {
   SmallSystem s(PETSC_COMM_WORLD, 2, 0.25, 1, test::HopfNormalForm());
   const auto x = test::HopfNormalForm::exact(0.1, 0.25);
   const double end = 5 * test::HopfNormalForm::period(0.25);
-  for (const auto& [sense, wanted] :
-       {std::pair(transient::Sense::rising, 5), {transient::Sense::falling, 5}, {transient::Sense::both, 10}})
+  for (const auto& [sense, wanted] : {std::pair(transient::CrossingSense::rising, 5),
+                                      {transient::CrossingSense::falling, 5},
+                                      {transient::CrossingSense::both, 10}})
     EXPECT_EQ(crossings(s, {1}, x, 0.2, sense, end, 100, 1e-8).size(), static_cast<std::size_t>(wanted));
 }
 
@@ -74,7 +75,8 @@ TEST(Section, CountsTheSensesAskedFor) {
 TEST(Section, ReturnsOfACycleTakeItsPeriod) {
   if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
   SmallSystem s(PETSC_COMM_WORLD, 2, 0.25, 1, test::HopfNormalForm());
-  const auto t = crossings(s, {1}, test::HopfNormalForm::exact(0, 0.25), 0.1, transient::Sense::rising, 40, 211, 1e-10);
+  const auto t =
+      crossings(s, {1}, test::HopfNormalForm::exact(0, 0.25), 0.1, transient::CrossingSense::rising, 40, 211, 1e-10);
   ASSERT_GE(t.size(), 4U);
   for (std::size_t k = 1; k < t.size(); ++k) EXPECT_NEAR(t[k] - t[k - 1], test::HopfNormalForm::period(0.25), 1e-8);
 }
@@ -85,14 +87,15 @@ TEST(Section, IsNotNoticedByTheMotion) {
   SmallSystem s(PETSC_COMM_WORLD, 2, 1, 2, test::VanDerPol());
   const Eigen::Vector2d start(2, 0);
   std::vector<double> with, growth[2];
-  crossings(s, {1}, start, 0, transient::Sense::both, 30, 60, 1e-7, &with);
+  crossings(s, {1}, start, 0, transient::CrossingSense::both, 30, 60, 1e-7, &with);
   for (const bool cut : {false, true}) {
     transient::Integrator integrator(s, {1}, s.vector(start).get(), {.tolerance = 1e-7});
     transient::Tangents tangents(integrator.scaled(), 2);
     integrator.carry(&tangents);
     int found = 0;
     transient::Section section(
-        integrator, [&] { return entry(integrator.scaled(), 0); }, transient::Sense::both, [&](double) { ++found; });
+        integrator, [&] { return entry(integrator.scaled(), 0); }, transient::CrossingSense::both,
+        [&](double) { ++found; });
     for (int k = 1; k <= 60; ++k) {
       if (cut)
         section.advance(0.5 * k);
@@ -128,7 +131,8 @@ TEST(Section, LeavesPredictionsAndFactorsAlone) {
     transient::Integrator integrator(s, {1}, s.vector(Eigen::Vector2d(2, 0)).get(), {.tolerance = 1e-5});
     int found = 0;
     transient::Section section(
-        integrator, [&] { return entry(integrator.scaled(), 0); }, transient::Sense::both, [&](double) { ++found; });
+        integrator, [&] { return entry(integrator.scaled(), 0); }, transient::CrossingSense::both,
+        [&](double) { ++found; });
     for (int k = 1; k <= 60; ++k) {
       if (cut)
         section.advance(0.5 * k);
@@ -159,7 +163,7 @@ TEST(Section, LiesOnTheMotionOfSchemesWithTheirOwnPace) {
       std::vector<double> times;
       std::vector<std::vector<double>> states;
       transient::Section section(
-          cut, [&] { return entry(cut.scaled(), 0) - value; }, transient::Sense::rising,
+          cut, [&] { return entry(cut.scaled(), 0) - value; }, transient::CrossingSense::rising,
           [&](double time) {
             times.push_back(time);
             states.push_back(core::gather(cut.scaled()));

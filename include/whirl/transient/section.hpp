@@ -13,8 +13,8 @@
 namespace whirl::transient {
 
 /// Which crossings of a surface count.
-enum class Sense { rising, falling, both };
-[[nodiscard]] std::span<const deck::Name<Sense>> names(Sense);
+enum class CrossingSense { rising, falling, both };
+[[nodiscard]] std::span<const deck::Name<CrossingSense>> names(CrossingSense);
 
 /// Goes along a motion and stops where a function g of the state vanishes.
 ///
@@ -35,7 +35,7 @@ public:
   /// Called where the motion crosses, while the integrator stands there; `time` as the integrator's [s].
   using Found = std::function<void(double time)>;
 
-  Section(Integrator& integrator, Height height, Sense sense, Found found);
+  Section(Integrator& integrator, Height height, CrossingSense sense, Found found);
 
   /// The integrator goes on to `time`, through all the same steps as by Integrator::advance(time), and throws as that
   /// does. Collective. A crossing costs some seven short steps, or some ten evaluations of g.
@@ -54,7 +54,7 @@ private:
 
   Integrator& integrator_;
   Height height_;
-  Sense sense_;
+  CrossingSense sense_;
   Found found_;
   std::unique_ptr<Integrator> twin_;  // made at the first crossing
   std::optional<double> last_;        // g where the integrator stands

@@ -142,7 +142,7 @@ private:
     };
     section_.emplace(
         integrator_, [this, here] { return plane_->height(system_, here()); },
-        options_.section ? options_.section->direction : transient::Sense::rising,
+        options_.section ? options_.section->direction : transient::CrossingSense::rising,
         [this, here](double time) {
           record_.cross(time - turns_before() * period(), system_.shown_at(here()), integrator_.scaled());
         });

@@ -22,7 +22,7 @@ struct SectionOptions {
   std::string of;                ///< a single coordinate,
   std::vector<PlaneTerm> plane;  ///< or several
   deck::Quantity value;          ///< in the unit of the coordinates
-  transient::Sense direction = transient::Sense::rising;
+  transient::CrossingSense direction = transient::CrossingSense::rising;
   /// The terms, whichever way they were given.
   [[nodiscard]] std::vector<PlaneTerm> terms() const;
 };
