@@ -33,11 +33,11 @@ std::span<const deck::Name<Following>> names(Following) {
   return table;
 }
 
-void describe(deck::Description<Step>& d) {
-  d.add("initial", &Step::initial, "*", deck::positive, "length of the first step").required();
-  d.add("min", &Step::min, "*", deck::positive, "length below which the branch ends").required();
-  d.add("max", &Step::max, "*", deck::positive, "longest step").required();
-  d.check([](const Step& s, const deck::Report& r) {
+void describe(deck::Description<BranchStep>& d) {
+  d.add("initial", &BranchStep::initial, "*", deck::positive, "length of the first step").required();
+  d.add("min", &BranchStep::min, "*", deck::positive, "length below which the branch ends").required();
+  d.add("max", &BranchStep::max, "*", deck::positive, "longest step").required();
+  d.check([](const BranchStep& s, const deck::Report& r) {
     if (s.min.value > s.initial.value) r.fail("min", "'min' is larger than 'initial'");
     if (s.max.value < s.initial.value) r.fail("max", "'max' is smaller than 'initial'");
   });

@@ -17,7 +17,7 @@ enum class Event { fold, hopf, branch_point, cyclic_fold, flip, neimark_sacker }
 [[nodiscard]] std::span<const deck::Name<Event>> names(Event);
 
 /// Lengths of steps along a branch, in units of the parameter (SI; as written in the unit of the range).
-struct Step {
+struct BranchStep {
   deck::Quantity initial;
   deck::Quantity min;
   deck::Quantity max;
@@ -37,8 +37,8 @@ struct Deflation {
 /// `speed`, or the path of a continuable option, and the interval to cover.
 struct Parameter {
   std::string path = "speed";
-  deck::Range range;         ///< SI; direction is from -> to
-  std::optional<Step> step;  ///< the study's own choice if absent
+  deck::Range range;               ///< SI; direction is from -> to
+  std::optional<BranchStep> step;  ///< the study's own choice if absent
   Following continuation = Following::arclength;
   std::optional<Deflation> deflation;                               ///< none if absent
   double beta_1 = std::numbers::pi / 6, beta_2 = std::numbers::pi;  ///< [rad], of solve::ContinuationOptions
@@ -54,7 +54,7 @@ struct Parameter {
 /// A copy of `machine` in which the option at `path` (not speed) has the value `value` (SI).
 [[nodiscard]] system::Machine with_parameter(const system::Machine& machine, std::string_view path, double value);
 
-void describe(deck::Description<Step>& d);
+void describe(deck::Description<BranchStep>& d);
 void describe(deck::Description<Deflation>& d);
 void describe(deck::Description<Parameter>& d);
 
