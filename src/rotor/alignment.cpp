@@ -27,9 +27,9 @@ Options of_statics(Options o) {
 // The shaft on rigid supports, factorised once: K with the rows and columns of the supports replaced by the identity.
 class Supported {
 public:
-  Supported(MPI_Comm comm, const Options& o, const std::vector<Support>& supports)
+  Supported(MPI_Comm comm, const Options& o, const std::vector<RigidSupport>& supports)
       : options_(o), planar_(assemble_planar(comm, of_statics(o))) {
-    for (const Support& s : supports) nodes_.push_back(s.node);
+    for (const RigidSupport& s : supports) nodes_.push_back(s.node);
     std::vector<PetscInt> rows;
     for (int node : nodes_) rows.push_back(2 * (node - 1));
     check(MatDuplicate(planar_.stiffness.get(), MAT_COPY_VALUES, held_.put()));
@@ -107,10 +107,10 @@ private:
   core::Vector x_, f_;
 };
 
-void validate(const Options& o, const std::vector<Support>& supports) {
+void validate(const Options& o, const std::vector<RigidSupport>& supports) {
   rotor::validate(o);
   std::set<int> seen;
-  for (const Support& s : supports) {
+  for (const RigidSupport& s : supports) {
     if (s.node < 1 || s.node > n_nodes(o))
       throw InputError(fmt::format("alignment: support node {} is not in 1..{}", s.node, n_nodes(o)));
     if (!seen.insert(s.node).second) throw InputError(fmt::format("alignment: two supports at node {}", s.node));
@@ -120,7 +120,7 @@ void validate(const Options& o, const std::vector<Support>& supports) {
     throw InputError("alignment: " + words(*loose, o, "on rigid supports"));
 }
 
-void validate(const Options& o, const std::vector<Support>& supports, const AlignmentRule& rule) {
+void validate(const Options& o, const std::vector<RigidSupport>& supports, const AlignmentRule& rule) {
   validate(o, supports);
   auto in_list = [&](int s) {
     if (s < 1 || s > static_cast<int>(supports.size()))
@@ -148,18 +148,19 @@ Eigen::VectorXd conditions(const RigidStatic& r, const AlignmentRule& rule) {
 
 }  // namespace
 
-RigidStatic rigid_static(MPI_Comm comm, const Options& options, const std::vector<Support>& supports, double gravity) {
+RigidStatic rigid_static(MPI_Comm comm, const Options& options, const std::vector<RigidSupport>& supports,
+                         double gravity) {
   core::agree(comm, [&] { validate(options, supports); });
   std::vector<double> elevations;
-  for (const Support& s : supports) elevations.push_back(s.elevation);
+  for (const RigidSupport& s : supports) elevations.push_back(s.elevation);
   return Supported(comm, options, supports).solve(elevations, gravity);
 }
 
-std::vector<double> align(MPI_Comm comm, const Options& options, const std::vector<Support>& supports,
+std::vector<double> align(MPI_Comm comm, const Options& options, const std::vector<RigidSupport>& supports,
                           const AlignmentRule& rule, double gravity) {
   core::agree(comm, [&] { validate(options, supports, rule); });
   std::vector<double> elevations;
-  for (const Support& s : supports) elevations.push_back(s.elevation);
+  for (const RigidSupport& s : supports) elevations.push_back(s.elevation);
   for (int s : rule.adjustable) elevations[static_cast<std::size_t>(s - 1)] = 0;
   const Eigen::Index n = static_cast<Eigen::Index>(rule.adjustable.size());
   if (n == 0) return elevations;
@@ -179,7 +180,7 @@ std::vector<double> align(MPI_Comm comm, const Options& options, const std::vect
   // Lifting and tilting the whole shaft by one metre changes no load and no moment: what it changes is rounding.
   const std::vector<double> z = node_positions(options);
   std::vector<double> lift(supports.size(), 1.0), tilt;
-  for (const Support& at : supports) tilt.push_back(z[static_cast<std::size_t>(at.node - 1)] / z.back());
+  for (const RigidSupport& at : supports) tilt.push_back(z[static_cast<std::size_t>(at.node - 1)] / z.back());
   const Eigen::VectorXd rounding =
       conditions(shaft.solve(lift, 0), rule).cwiseAbs().cwiseMax(conditions(shaft.solve(tilt, 0), rule).cwiseAbs());
   // Moments and loads have different sizes: rows are scaled before the rank is judged.

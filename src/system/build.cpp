@@ -24,7 +24,7 @@ using core::check;
 namespace {
 
 // Bearings and elements that hold the shaft, one at a node: two bearings there hold it at the mean of their elevations.
-std::vector<rotor::Support> rigid_supports(const Train& train) {
+std::vector<rotor::RigidSupport> rigid_supports(const Train& train) {
   std::map<int, std::pair<double, int>> at;  // node: sum of the elevations, count
   for (const Support& s : train.supports) {
     at[s.node].first += s.elevation;
@@ -32,7 +32,7 @@ std::vector<rotor::Support> rigid_supports(const Train& train) {
   }
   for (const Element& e : train.elements)
     if (holds_shaft(e)) ++at[e.node].second;
-  std::vector<rotor::Support> out;
+  std::vector<rotor::RigidSupport> out;
   for (const auto& [node, sum] : at) out.push_back({node, sum.first / sum.second});
   return out;
 }
@@ -146,10 +146,10 @@ std::vector<std::array<double, 2>> RotorSystem::axes_of(const Train& train) cons
       continue;
     }
     if (line.empty()) {
-      std::vector<rotor::Support> supports;
+      std::vector<rotor::RigidSupport> supports;
       supports = rigid_supports(train);
       line = rotor::rigid_static(comm_, train.rotor, supports, train.gravity).slope;
-      for (rotor::Support& s : supports) s.elevation = 0;
+      for (rotor::RigidSupport& s : supports) s.elevation = 0;
       if (train.gravity_x != 0) across = rotor::rigid_static(comm_, train.rotor, supports, -train.gravity_x).slope;
     }
     const auto at = static_cast<std::size_t>(support.node - 1);

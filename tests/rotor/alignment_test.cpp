@@ -61,7 +61,7 @@ TEST(RigidStatic, ReactionsBalanceWeightAndItsMomentWithDiscs) {
 
 TEST(Alignment, ZeroMomentOverTheMiddleSupportAndAGivenLoad) {
   const Uniform u;
-  const std::vector<rotor::Support> supports{{1, 0.0}, {5, 7.0}, {9, 0.0}};
+  const std::vector<rotor::RigidSupport> supports{{1, 0.0}, {5, 7.0}, {9, 0.0}};
   auto elevations = rotor::align(MPI_COMM_WORLD, u.options, supports, {{2}, {5}, {}, {}}, g);
   // Without moment the halves are simple beams: the middle carries half of the whole weight.
   auto aligned = supports;
@@ -78,8 +78,8 @@ TEST(Alignment, ZeroMomentOverTheMiddleSupportAndAGivenLoad) {
 
 TEST(Alignment, WrongQuestionsAreRefused) {
   const Uniform u;
-  const std::vector<rotor::Support> three{{1, 0.0}, {5, 0.0}, {9, 0.0}};
-  const auto refused = [&](const std::vector<rotor::Support>& supports, const rotor::AlignmentRule& rule,
+  const std::vector<rotor::RigidSupport> three{{1, 0.0}, {5, 0.0}, {9, 0.0}};
+  const auto refused = [&](const std::vector<rotor::RigidSupport>& supports, const rotor::AlignmentRule& rule,
                            const std::string& text) {
     try {
       (void)rotor::align(MPI_COMM_WORLD, u.options, supports, rule, g);

@@ -352,7 +352,7 @@ TEST(Families, AShapeThatTurnsWithTheShaftIsNotDampedByIt) {
 // Statics do not depend on the family: nodal deflections of the beam are exact.
 TEST(Families, AlignmentIsTheSame) {
   rotor::Options o = test::stepped_shaft();
-  const std::vector<rotor::Support> supports{{2, 0}, {12, 0}};
+  const std::vector<rotor::RigidSupport> supports{{2, 0}, {12, 0}};
   const rotor::RigidStatic usual = rotor::rigid_static(MPI_COMM_WORLD, o, supports, 9.81);
   for (const BeamElement e : {BeamElement::timoshenko_linear, BeamElement::timoshenko_hermitian}) {
     o.element = e;

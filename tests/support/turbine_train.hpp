@@ -66,8 +66,8 @@ inline rotor::Options train_rotor(const std::string& segments = "segments.csv") 
 }
 
 /// Bearing nodes with their tabulated elevations.
-inline std::vector<rotor::Support> train_supports() {
-  std::vector<rotor::Support> supports;
+inline std::vector<rotor::RigidSupport> train_supports() {
+  std::vector<rotor::RigidSupport> supports;
   for (auto& row : read_csv(train_folder + "bearings.csv"))
     supports.push_back({std::stoi(row["node"]), std::stod(row["elevation_m"])});
   return supports;

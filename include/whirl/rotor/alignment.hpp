@@ -10,7 +10,7 @@
 namespace whirl::rotor {
 
 /// A rigid support: the journal at `node` (1-based) sits at height `elevation` (m, positive up).
-struct Support {
+struct RigidSupport {
   int node = 0;
   double elevation = 0;
 };
@@ -33,14 +33,15 @@ struct AlignmentRule {
 
 /// Deflection, reactions and moments for given supports (at least two) and acceleration of gravity (m/s^2, along -y).
 /// Collective; throws core::InputError for supports that do not hold the shaft.
-[[nodiscard]] RigidStatic rigid_static(MPI_Comm comm, const Options& options, const std::vector<Support>& supports,
+[[nodiscard]] RigidStatic rigid_static(MPI_Comm comm, const Options& options, const std::vector<RigidSupport>& supports,
                                        double gravity);
 
 /// Elevations of all supports (m) that satisfy `rule`; those not adjustable keep their value. The response is linear in
 /// the elevations, so influence coefficients give the exact answer. Collective; throws core::InputError if the
 /// conditions do not determine the elevations. Source: Gavalas (2022), sec. 2.1 (zero coupling moments). Cost: one
 /// factorisation.
-[[nodiscard]] std::vector<double> align(MPI_Comm comm, const Options& options, const std::vector<Support>& supports,
-                                        const AlignmentRule& rule, double gravity);
+[[nodiscard]] std::vector<double> align(MPI_Comm comm, const Options& options,
+                                        const std::vector<RigidSupport>& supports, const AlignmentRule& rule,
+                                        double gravity);
 
 }  // namespace whirl::rotor

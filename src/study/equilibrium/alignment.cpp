@@ -17,7 +17,7 @@ StudyResult Alignment::run(Context& context) {
   };
   rotor::Options shaft = context.machine.rotor;
   shaft.reduction = {};
-  std::vector<rotor::Support> supports;
+  std::vector<rotor::RigidSupport> supports;
   for (const auto& b : context.machine.bearings) supports.push_back({b.node, b.elevation});
   for (const system::Element& e : context.machine.elements)
     if (system::holds_shaft(e)) supports.push_back({e.node, 0});
