@@ -7,7 +7,7 @@
 
 namespace whirl::film {
 
-using core::EdgeInterval, core::Interval, core::truncated_edge, core::truncated_linear;
+using core::EdgeInterval, core::IntervalIntegral, core::truncated_edge, core::truncated_linear;
 
 BandedPad::BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant)
     : PadEquations(pad, options, lubricant),
@@ -87,7 +87,7 @@ void BandedPad::integrate(Need need, Response& response) {
         const EdgeInterval part = truncated_edge(p, q);
         integral = part.integral, d_p = part.d_near, d_q = part.d_far;
       } else if (truncated && std::min(p, q) < 0.0) {
-        const Interval<double> part = truncated_linear(p, q);
+        const IntervalIntegral<double> part = truncated_linear(p, q);
         integral = part.integral, d_p = part.d_left, d_q = part.d_right;
       }
       force += integral * weight;

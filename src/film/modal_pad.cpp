@@ -18,7 +18,7 @@
 namespace whirl::film {
 namespace {
 
-using core::EdgeInterval, core::Interval, core::truncated_edge, core::truncated_linear;
+using core::EdgeInterval, core::IntervalIntegral, core::truncated_edge, core::truncated_linear;
 
 class ModalPad final : public PadSolver {
 public:
@@ -227,7 +227,8 @@ void ModalPad::analyse(const std::vector<Pack>& rows, Pack* modes) const {
 void ModalPad::integrate_mixed(std::size_t strip, bool gradient) {
   Pack total = Pack::zero();
   for (std::size_t pack = 0; pack < n_packs_; ++pack) {
-    const Interval<Pack> part = truncated_linear(p_[strip * n_packs_ + pack], p_[(strip + 1) * n_packs_ + pack]);
+    const IntervalIntegral<Pack> part =
+        truncated_linear(p_[strip * n_packs_ + pack], p_[(strip + 1) * n_packs_ + pack]);
     const Pack weight = row_weight_[pack];
     total += weight * part.integral;
     rows_left_[pack] = weight * part.d_left;

@@ -11,7 +11,7 @@
 
 namespace whirl::film {
 
-using core::EdgeInterval, core::Interval, core::truncated_edge, core::truncated_linear;
+using core::EdgeInterval, core::IntervalIntegral, core::truncated_edge, core::truncated_linear;
 namespace {
 
 // Conduction across a film of L layers, in lambda/h: out of layer k flows (K T - b)_k. One layer is a parabola, which a
@@ -304,7 +304,7 @@ void ThdPad<Count, Most>::integrate(Need need, std::size_t first, StateResponse&
         const EdgeInterval part = truncated_edge(p, q);
         integral = part.integral, d_p = part.d_near, d_q = part.d_far;
       } else if (truncated && std::min(p, q) < 0.0) {
-        const Interval<double> part = truncated_linear(p, q);
+        const IntervalIntegral<double> part = truncated_linear(p, q);
         integral = part.integral, d_p = part.d_left, d_q = part.d_right;
       }
       for (std::size_t c = 0; c < (options_.tilt ? 4U : 2U); ++c) {

@@ -17,10 +17,10 @@ namespace {
 constexpr double warm = 313.15;  // K, 40 degC: at which oils are named
 
 // Of the fluid in a film with these results: that of a gas where it is densest, that of an oil at its mean temperature.
-struct Fluid {
+struct FluidInFilm {
   double density, viscosity;
 };
-Fluid fluid_of(const system::Support& s, const film::FilmReport& report) {
+FluidInFilm fluid_of(const system::Support& s, const film::FilmReport& report) {
   if (const auto* gas = film::find<film::Gas>(s.film))
     return {report.max_pressure / (gas->gas_constant * gas->temperature), s.lubricant.viscosity};
   double viscosity = s.lubricant.viscosity;
@@ -64,7 +64,7 @@ constexpr Usual gas_density{"density", 0.05, 50, "kg/m^3", 1, "air has 1.2 kg/m^
 constexpr Usual gas_viscosity{"viscosity", 5e-6, 1e-4, "mPa s", 1e3, "air has 0.018 mPa s at 20 degC"};
 
 // Of the same without results: a gas as dense as at its ends, an oil as viscous as where it is coldest.
-Fluid thickest_fluid(const system::Support& s) {
+FluidInFilm thickest_fluid(const system::Support& s) {
   film::FilmReport report;
   if (const auto* gas = film::find<film::Gas>(s.film)) report.max_pressure = gas->ambient;
   if (const auto* thd = film::find<film::Thd>(s.film)) {
@@ -76,7 +76,7 @@ Fluid thickest_fluid(const system::Support& s) {
   return fluid_of(s, report);
 }
 
-double reynolds_number(const system::Support& s, const Fluid& fluid, double speed) {
+double reynolds_number(const system::Support& s, const FluidInFilm& fluid, double speed) {
   return fluid.density * std::abs(speed) * s.geometry.radius * s.geometry.clearance / fluid.viscosity;
 }
 

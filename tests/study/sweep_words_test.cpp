@@ -26,13 +26,13 @@ study::SweepRow row(const std::string& name, Lines unusual, Lines warnings) {
 
 // A row of a sweep says whether its machine is stable, whatever study found it.
 TEST(SweepVerdict, IsThatOfTheStudies) {
-  using study::Found;
+  using study::StabilityWord;
   io::StudySummary branch, modes, response;
   branch.name = "balanced";
   branch.stability = "loses stability";
   branch.ranges = {{600, 5000, "rpm", "stable"}, {5000, 7500, "rpm", "unstable"}};
   EXPECT_EQ(study::verdict_of(branch).words, "stable 600 to 5000, unstable to 7500 rpm");
-  EXPECT_EQ(study::verdict_of(branch).found, Found::in_part);
+  EXPECT_EQ(study::verdict_of(branch).found, StabilityWord::in_part);
   modes.name = "modes";
   const auto mode = [&](double speed, const std::string& stability) {
     io::ModeEntry m;
@@ -43,27 +43,27 @@ TEST(SweepVerdict, IsThatOfTheStudies) {
     modes.modes.push_back(m);
   };
   mode(3000, "stable");
-  EXPECT_EQ(study::verdict_of(modes).found, Found::stable);
+  EXPECT_EQ(study::verdict_of(modes).found, StabilityWord::stable);
   mode(3000, "not resolved");
-  EXPECT_EQ(study::verdict_of(modes).found, Found::stable);
+  EXPECT_EQ(study::verdict_of(modes).found, StabilityWord::stable);
   modes.modes.back().stability = "undetermined";
-  EXPECT_EQ(study::verdict_of(modes).found, Found::undetermined);
+  EXPECT_EQ(study::verdict_of(modes).found, StabilityWord::undetermined);
   mode(7500, "diverges");
   EXPECT_EQ(study::verdict_of(modes).words, "unstable at 7500 rpm");
   modes.modes.erase(modes.modes.begin(), modes.modes.begin() + 2);
-  EXPECT_EQ(study::verdict_of(modes).found, Found::unstable);
+  EXPECT_EQ(study::verdict_of(modes).found, StabilityWord::unstable);
   // Of a shaft without its bearings nothing is said.
   modes.modes.front().more.clear();
-  EXPECT_EQ(study::verdict_of(modes).found, Found::nothing);
+  EXPECT_EQ(study::verdict_of(modes).found, StabilityWord::nothing);
   response.name = "r";
   response.stability = "unstable at the 13 speeds counted";
-  EXPECT_EQ(study::verdict_of(response).found, Found::unstable);
+  EXPECT_EQ(study::verdict_of(response).found, StabilityWord::unstable);
   response.stability = "unstable from 300 to 900 rpm";
-  EXPECT_EQ(study::verdict_of(response).found, Found::in_part);
+  EXPECT_EQ(study::verdict_of(response).found, StabilityWord::in_part);
   response.stability = "stable throughout";
   const std::vector<io::StudySummary> both{branch, response};
   EXPECT_EQ(study::verdict_of(both).words, "balanced: stable 600 to 5000, unstable to 7500 rpm; r: stable throughout");
-  EXPECT_EQ(study::verdict_of(both).found, Found::in_part);
+  EXPECT_EQ(study::verdict_of(both).found, StabilityWord::in_part);
   modes = branch;
   modes.stability = "loses stability, by the 9 speeds computed";
   EXPECT_EQ(study::verdict_of(modes).words, "stable 600 to 5000, unstable to 7500 rpm, by the 9 speeds computed");

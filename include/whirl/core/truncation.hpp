@@ -21,14 +21,14 @@ inline double positive_part(double x) {
 }
 
 template <class T>
-struct Interval {
+struct IntervalIntegral {
   T integral;  // over the interval, divided by its length
   T d_left, d_right;
 };
 
 /// p linear from l to r; T is double or a pack of doubles.
 template <class T>
-Interval<T> truncated_linear(T l, T r) {
+IntervalIntegral<T> truncated_linear(T l, T r) {
   constexpr double kTiny = 1e-300;  // keeps 0/0 at 0
   const T lp = positive_part(l), rp = positive_part(r);
   const T u = lp / (kTiny + (lp + (rp - r))), v = rp / (kTiny + (rp + (lp - l)));

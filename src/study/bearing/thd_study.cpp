@@ -25,7 +25,7 @@ namespace {
 
 // What a sweep has done: rows of its table, the reasons of those without a film (empty: there is one), and the last
 // state to go on from, in rows shared by the ranks.
-struct Sweep {
+struct SpeedSweep {
   std::vector<std::vector<double>> rows;
   std::vector<std::string> reasons;
   std::vector<std::string> unsettled;
@@ -115,7 +115,7 @@ std::vector<double> last_state(const io::Group& from, const thermal::Rows& rows)
 
 // Warns of the largest Reynolds number, of fluid at the mean temperature of the film, that is computed as laminar.
 void warn_of_vortices(io::StudySummary& summary, const ThdOptions& options, const system::Bearing& bearing,
-                      const Sweep& sweep) {
+                      const SpeedSweep& sweep) {
   if (options.turbulence != thermal::Turbulence::laminar) return;
   const thermal::Fluid fluid = thermal::make_fluid(options.fluid);
   const film::Geometry& g = *bearing.geometry;
@@ -169,7 +169,7 @@ StudyResult ThdStudy::run(Context& context) {
   };
 
   Pieces pieces(results, context.resume, true, core::size_of(context.comm));
-  Sweep sweep;
+  SpeedSweep sweep;
   std::vector<double> last;
   if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
   SolvedFilm solved;  // at the last speed

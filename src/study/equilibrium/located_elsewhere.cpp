@@ -18,14 +18,14 @@ constexpr int most_trials = 40, most_false_positions = 12;
 constexpr double place_tolerance = 1e-6,
                  difference_tolerance = 1e-2;  // of the parameter; of its change from mesh to mesh
 
-struct Crossing {
+struct CriticalEigenvalue {
   double distance = unknown, omega = unknown;  // of the eigenvalue next to the critical one, from the axis [1/s, rad/s]
 };
 
-Crossing crossing_at(system::Plant& system, Vec x, double omega) {
+CriticalEigenvalue crossing_at(system::Plant& system, Vec x, double omega) {
   const auto s = equilibrium_stability(system, x);
   double nearest = std::numeric_limits<double>::infinity();
-  Crossing out;
+  CriticalEigenvalue out;
   for (std::size_t k = 0; k < s.values.size(); ++k) {
     const double apart = std::abs(std::abs(s.values[k].imag()) - omega) + std::abs(s.values[k].real());
     if (apart >= nearest) continue;
@@ -49,7 +49,7 @@ std::optional<solve::Refined> approached(system::Plant& system, solve::Equilibri
     if (auto there = solve::refine(system, problem, event, u.get(), tangent.get(), at.newton)) return there;
     if (look == most_looks) return {};
     system.set_parameter(p * at.scale);
-    const Crossing here = crossing_at(system, x, std::abs(event.critical.imag()));
+    const CriticalEigenvalue here = crossing_at(system, x, std::abs(event.critical.imag()));
     if (look > 0) slope = (here.distance - last_distance) / (p - last_p);
     if (!std::isfinite(here.distance / slope)) return {};
     last_p = p;
@@ -80,7 +80,7 @@ std::optional<solve::Refined> enclose(system::Plant& system, solve::EquilibriumP
     system.set_parameter(parameter * at.scale);
     if (!solve::find_equilibrium(system, trial.get(), at.newton).converged) return unknown;
     core::check(VecCopy(trial.get(), x));
-    const Crossing crossing = crossing_at(system, x, omega);
+    const CriticalEigenvalue crossing = crossing_at(system, x, omega);
     omega = crossing.omega;
     return crossing.distance;
   };

@@ -29,13 +29,13 @@ double gain_of(const Eigen::Matrix2cd& g) {
   return spectral::singular_values(Eigen::MatrixXcd(g))(0);
 }
 
-struct Resonance {
+struct PeakLines {
   std::size_t peak = 0, first = 0, last = 0;  // lines, from 0
   [[nodiscard]] bool holds(std::size_t k) const { return k >= first && k <= last; }
 };
 
-Resonance resonance_of(const std::vector<double>& gain) {
-  Resonance r;
+PeakLines resonance_of(const std::vector<double>& gain) {
+  PeakLines r;
   r.peak = static_cast<std::size_t>(std::max_element(gain.begin(), gain.end()) - gain.begin());
   const double border = gain[r.peak] * std::sqrt(resonance_power);
   r.first = r.last = r.peak;
@@ -56,7 +56,7 @@ struct Judged {
   double deviation = 0;            // root mean square of |H1 - G| over the largest gain of G at the line, off resonance
 };
 
-Judged judge(const LinearityRecord& r, const std::vector<std::vector<double>>& linear, const Resonance& resonance,
+Judged judge(const LinearityRecord& r, const std::vector<std::vector<double>>& linear, const PeakLines& resonance,
              double probability) {
   Judged j;
   std::size_t count = 0;
@@ -191,7 +191,7 @@ void put_linearity(const Context& context, const LinearityOptions& options, cons
   const transient::SpectralMatrix& spectra = records.front().spectra;
   std::vector<double> gain;
   for (const auto& line : linear) gain.push_back(gain_of(matrix_of(line)));
-  const Resonance resonance = resonance_of(gain);
+  const PeakLines resonance = resonance_of(gain);
   summary.set("speed", options.speed.value, "rad/s");
   summary.set("resolution", spectra.resolution, "Hz");
   summary.set("averages", spectra.averages, "1");

@@ -213,8 +213,8 @@ private:
     std::vector<std::string> unstable;
     bool all = !verdicts_.empty();
     for (std::size_t i = 0; i < verdicts_.size(); ++i) {
-      all = all && verdicts_[i].found == Found::stable;
-      if (verdicts_[i].found >= Found::in_part) unstable.push_back(names_[i]);
+      all = all && verdicts_[i].found == StabilityWord::stable;
+      if (verdicts_[i].found >= StabilityWord::in_part) unstable.push_back(names_[i]);
     }
     const std::size_t shown = std::min<std::size_t>(6, unstable.size());
     if (unstable.empty()) return all ? "all are stable where their studies looked" : "";
@@ -242,7 +242,7 @@ private:
     std::vector<std::string> told;
     bool marked = false;
     for (std::size_t i = 0; i < verdicts_.size(); ++i) {
-      if (verdicts_[i].found <= Found::undamped) continue;
+      if (verdicts_[i].found <= StabilityWord::undamped) continue;
       marked = true;
       if (verdicts_[i].words != "unstable" && verdicts_[i].words != name_of(verdicts_[i].found))
         told.push_back(names_[i] + ": " + verdicts_[i].words);
@@ -258,11 +258,11 @@ private:
 
   // What the study itself says of a row, else what the others say.
   [[nodiscard]] std::string verdict(std::size_t row, const std::string& study) const {
-    Found found = verdicts_[row].found;
+    StabilityWord found = verdicts_[row].found;
     const auto at = std::ranges::find(rows_[row], study, &io::StudySummary::name);
     if (at != rows_[row].end())
-      if (const Found own = verdict_of(*at).found; own != Found::nothing) found = own;
-    return found == Found::nothing ? "" : name_of(found);
+      if (const StabilityWord own = verdict_of(*at).found; own != StabilityWord::nothing) found = own;
+    return found == StabilityWord::nothing ? "" : name_of(found);
   }
 
   [[nodiscard]] std::vector<io::BriefTable> variants() const {

@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::size_t most = 4;  // stretches, or speeds, that are named
 
-Found found_in(std::string_view words) {
+StabilityWord found_in(std::string_view words) {
   const auto has = [&](std::string_view word) { return words.find(word) != std::string_view::npos; };
   if (words == "unstable" || words.starts_with("unstable throughout") || words.starts_with("unstable at the "))
-    return Found::unstable;
-  if (has("unstable") || has("loses stability")) return Found::in_part;
-  if (has("undetermined")) return Found::undetermined;
-  return has("undamped") ? Found::undamped : has("stable") ? Found::stable : Found::nothing;
+    return StabilityWord::unstable;
+  if (has("unstable") || has("loses stability")) return StabilityWord::in_part;
+  if (has("undetermined")) return StabilityWord::undetermined;
+  return has("undamped") ? StabilityWord::undamped : has("stable") ? StabilityWord::stable : StabilityWord::nothing;
 }
 
 std::string of_ranges(const std::vector<io::StabilityRange>& ranges) {
@@ -52,35 +52,37 @@ VariantVerdict of_modes(const std::vector<io::ModeEntry>& modes) {
   }
   if (all.empty()) return {};
   if (unstable.empty()) {
-    const Found found = open ? Found::undetermined : undamped ? Found::undamped : Found::stable;
+    const StabilityWord found = open       ? StabilityWord::undetermined
+                                : undamped ? StabilityWord::undamped
+                                           : StabilityWord::stable;
     return {found, name_of(found)};
   }
-  if (unstable.size() == all.size()) return {Found::unstable, "unstable"};
+  if (unstable.size() == all.size()) return {StabilityWord::unstable, "unstable"};
   std::string text = "unstable at";
   for (std::size_t k = 0; k < std::min(most, unstable.size()); ++k)
     text += fmt::format("{} {:.6g}", k == 0 ? "" : ",", unstable[k]);
   text += " " + modes.front().speed_unit;
   if (unstable.size() > most) text += fmt::format(" and {} more speeds", unstable.size() - most);
-  return {Found::in_part, text};
+  return {StabilityWord::in_part, text};
 }
 
 }  // namespace
 
-const char* name_of(Found found) {
+const char* name_of(StabilityWord found) {
   switch (found) {
-    case Found::stable:
+    case StabilityWord::stable:
       return "stable";
-    case Found::undamped:
+    case StabilityWord::undamped:
       return "undamped";
-    case Found::undetermined:
+    case StabilityWord::undetermined:
       return "undetermined";
-    case Found::no_result:
+    case StabilityWord::no_result:
       return "no result";
-    case Found::in_part:
+    case StabilityWord::in_part:
       return "unstable in part";
-    case Found::unstable:
+    case StabilityWord::unstable:
       return "UNSTABLE";
-    case Found::nothing:
+    case StabilityWord::nothing:
       break;
   }
   return "-";
@@ -95,7 +97,7 @@ VariantVerdict verdict_of(const io::StudySummary& study) {
   if (!words.empty()) return {found_in(words), words};
   VariantVerdict out = of_modes(study.modes);
   if (out.words.empty() && study.status != "completed" && study.values.empty())
-    out = {Found::no_result, "no result: " + study.status};
+    out = {StabilityWord::no_result, "no result: " + study.status};
   return out;
 }
 
@@ -107,13 +109,13 @@ VariantVerdict verdict_of(std::span<const io::StudySummary> studies) {
     const VariantVerdict one = verdict_of(s);
     if (one.words.empty()) continue;
     alike = alike && (out.words.empty() || one.words == out.words);
-    stable = stable || one.found == Found::stable;
+    stable = stable || one.found == StabilityWord::stable;
     each += fmt::format("{}{}: {}", each.empty() ? "" : "; ", s.name, one.words);
     out.found = std::max(out.found, one.found);
     if (out.words.empty()) out.words = one.words;
   }
   if (!alike) out.words = each;
-  if (out.found == Found::unstable && stable) out.found = Found::in_part;
+  if (out.found == StabilityWord::unstable && stable) out.found = StabilityWord::in_part;
   return out;
 }
 

@@ -9,12 +9,12 @@
 namespace whirl::study {
 
 /// By rising weight. `in_part`: unstable somewhere in the range of a study, not everywhere.
-enum class Found { nothing, stable, undamped, undetermined, no_result, in_part, unstable };
+enum class StabilityWord { nothing, stable, undamped, undetermined, no_result, in_part, unstable };
 /// "-", "stable", "undamped", "undetermined", "no result", "unstable in part", "UNSTABLE".
-[[nodiscard]] const char* name_of(Found found);
+[[nodiscard]] const char* name_of(StabilityWord found);
 
 struct VariantVerdict {
-  Found found = Found::nothing;
+  StabilityWord found = StabilityWord::nothing;
   std::string words = {};  ///< "stable 300 to 1470 rpm, unstable to 3000 rpm"; empty where nothing is known
 };
 
