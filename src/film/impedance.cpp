@@ -1,4 +1,4 @@
-#include "whirl/film/impedance.hpp"
+#include "film/impedance.hpp"
 
 #include <fmt/core.h>
 

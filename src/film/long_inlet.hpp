@@ -1,7 +1,7 @@
 #pragma once
 // The long film with an inlet at the top.
 
-#include "whirl/film/impedance.hpp"
+#include "film/impedance.hpp"
 
 namespace whirl::film {
 

@@ -4,11 +4,11 @@
 #include <limits>
 #include <numbers>
 
+#include "film/impedance.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/closed_form.hpp"
 #include "whirl/film/describe.hpp"
 #include "whirl/film/film.hpp"
-#include "whirl/film/impedance.hpp"
 
 namespace whirl::film {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "study/parameter.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/solve/branch/continuation.hpp"
-#include "whirl/study/parameter.hpp"
 #include "whirl/system/options.hpp"
 #include "whirl/system/plant.hpp"
 

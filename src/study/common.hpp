@@ -8,9 +8,9 @@
 
 #include "findings.hpp"
 #include "layout.hpp"
+#include "study/parameter.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/newton/newton.hpp"
-#include "whirl/study/parameter.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"
 

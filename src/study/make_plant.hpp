@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "whirl/study/parameter.hpp"
+#include "study/parameter.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {

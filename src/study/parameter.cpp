@@ -1,4 +1,4 @@
-#include "whirl/study/parameter.hpp"
+#include "study/parameter.hpp"
 
 #include <fmt/core.h>
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "sense.hpp"
-#include "whirl/study/bearing/thd_study.hpp"
-#include "whirl/study/linear/unbalance_response.hpp"
+#include "study/bearing/thd_study.hpp"
+#include "study/linear/unbalance_response.hpp"
 
 namespace whirl::study {
 

@@ -17,7 +17,7 @@
 
 #include "service_speeds.hpp"
 #include "study/bars/unresolved.hpp"
-#include "whirl/study/linear/separation.hpp"
+#include "study/linear/separation.hpp"
 
 namespace whirl::study {
 namespace {

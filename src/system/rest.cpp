@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "system/start.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/system/start.hpp"
 
 namespace whirl::system {
 

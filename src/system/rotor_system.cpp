@@ -11,8 +11,8 @@
 #include "rotor_part.hpp"
 #include "settling.hpp"
 #include "slope.hpp"
+#include "system/start.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/system/start.hpp"
 
 namespace whirl::system {
 

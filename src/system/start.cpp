@@ -1,4 +1,4 @@
-#include "whirl/system/start.hpp"
+#include "system/start.hpp"
 
 #include <petscksp.h>
 

@@ -1,4 +1,4 @@
-#include "whirl/thermal/bush.hpp"
+#include "thermal/bush.hpp"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "whirl/thermal/journal.hpp"
+#include "thermal/journal.hpp"
 
 #include <algorithm>
 #include <utility>

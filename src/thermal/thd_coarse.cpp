@@ -1,4 +1,4 @@
-#include "whirl/thermal/thd_coarse.hpp"
+#include "thermal/thd_coarse.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "thermal/bush.hpp"
+#include "thermal/journal.hpp"
+#include "thermal/thd_coarse.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/from_options.hpp"
 #include "whirl/core/gate.hpp"
-#include "whirl/thermal/bush.hpp"
-#include "whirl/thermal/journal.hpp"
-#include "whirl/thermal/thd_coarse.hpp"
 
 namespace whirl::thermal {
 

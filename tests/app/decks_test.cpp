@@ -10,12 +10,12 @@
 #include <regex>
 
 #include "source_dir.hpp"
+#include "study/cycle/cycle_branch.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
 #include "support/turbine_train.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
-#include "whirl/study/cycle/cycle_branch.hpp"
 #include "whirl/study/deck.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
 
 namespace {
 

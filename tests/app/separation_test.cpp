@@ -1,6 +1,6 @@
 // Separation margins of API 617: 17 (1 - 1/(AF - 1.5)) percent below the operating range, ten percent more above it.
 
-#include "whirl/study/linear/separation.hpp"
+#include "study/linear/separation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "bench/timing.hpp"
+#include "system/start.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 

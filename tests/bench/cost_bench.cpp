@@ -10,6 +10,7 @@
 
 #include "bench/timing.hpp"
 #include "support/half_rotor.hpp"
+#include "system/start.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
@@ -17,7 +18,6 @@
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using core::check;

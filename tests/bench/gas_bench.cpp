@@ -12,12 +12,12 @@
 #include "film/gas_cases.hpp"
 #include "solve/newton/port_krylov.hpp"
 #include "support/half_rotor.hpp"
+#include "system/start.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/film/coefficients.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/newton.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using core::check;

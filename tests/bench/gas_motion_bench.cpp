@@ -10,11 +10,11 @@
 
 #include "bench/timing.hpp"
 #include "film/gas_cases.hpp"
+#include "system/start.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 #include "whirl/transient/integrator.hpp"
 
 using namespace whirl;

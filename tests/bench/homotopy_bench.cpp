@@ -26,6 +26,7 @@
 
 #include "bench/timing.hpp"
 #include "support/half_rotor.hpp"
+#include "system/start.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -33,7 +34,6 @@
 #include "whirl/solve/shooting/shooting_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using core::check;

@@ -10,13 +10,13 @@
 #include <string>
 
 #include "bench/timing.hpp"
+#include "solve/newton/transfer_modes.hpp"
 #include "support/train_system.hpp"
+#include "system/start.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/solve/newton/transfer_modes.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 

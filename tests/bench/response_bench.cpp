@@ -7,11 +7,11 @@
 
 #include "bench/timing.hpp"
 #include "support/train_system.hpp"
+#include "system/start.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/frequency_solver.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using Complex = std::complex<double>;

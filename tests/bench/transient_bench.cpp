@@ -10,11 +10,11 @@
 
 #include "bench/timing.hpp"
 #include "support/train_system.hpp"
+#include "system/start.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <numbers>
 
+#include "film/impedance.hpp"
 #include "whirl/film/film.hpp"
-#include "whirl/film/impedance.hpp"
 
 namespace whirl::film::testing {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "film/cases.hpp"
-#include "whirl/film/impedance.hpp"
+#include "film/impedance.hpp"
 
 namespace whirl::film::testing {
 namespace {

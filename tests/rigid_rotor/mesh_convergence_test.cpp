@@ -7,7 +7,7 @@
 
 #include "rigid_rotor/run_deck.hpp"
 #include "source_dir.hpp"
-#include "whirl/study/convergence/mesh_convergence.hpp"
+#include "study/convergence/mesh_convergence.hpp"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "solve/newton/rational_fit.hpp"
+#include "solve/newton/transfer_modes.hpp"
 #include "support/small_system.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
-#include "whirl/solve/newton/transfer_modes.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 using namespace whirl;

@@ -5,12 +5,12 @@
 #include <limits>
 #include <numbers>
 
-#include "whirl/study/linear/critical_speed_map.hpp"
-#include "whirl/study/linear/element_convergence.hpp"
-#include "whirl/study/linear/frequency_response.hpp"
-#include "whirl/study/linear/modes.hpp"
-#include "whirl/study/linear/reduction_errors.hpp"
-#include "whirl/study/linear/unbalance_response.hpp"
+#include "study/linear/critical_speed_map.hpp"
+#include "study/linear/element_convergence.hpp"
+#include "study/linear/frequency_response.hpp"
+#include "study/linear/modes.hpp"
+#include "study/linear/reduction_errors.hpp"
+#include "study/linear/unbalance_response.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 
 namespace whirl::study {

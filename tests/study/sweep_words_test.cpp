@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "study/sweep/sweep_table.hpp"
-#include "whirl/study/sweep/verdict_words.hpp"
+#include "study/sweep/verdict_words.hpp"
 
 using namespace whirl;
 

@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "support/half_rotor.hpp"
+#include "system/start.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/cycle.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 namespace whirl::test {
 

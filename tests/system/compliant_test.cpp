@@ -10,12 +10,12 @@
 #include "support/film_of.hpp"
 #include "support/petsc_options.hpp"
 #include "support/stage_equations.hpp"
+#include "system/start.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using film::testing::Kind;

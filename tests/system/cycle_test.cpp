@@ -6,11 +6,11 @@
 
 #include "support/petsc_options.hpp"
 #include "support/train_system.hpp"
+#include "system/start.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 

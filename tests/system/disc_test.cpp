@@ -8,11 +8,11 @@
 #include <complex>
 
 #include "support/dense.hpp"
+#include "system/start.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/system/options.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using Complex = std::complex<double>;

@@ -10,11 +10,11 @@
 
 #include "film/gas_cases.hpp"
 #include "support/half_rotor.hpp"
+#include "system/start.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/newton.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 

@@ -7,11 +7,11 @@
 
 #include "support/train_system.hpp"
 #include "support/varied_machines.hpp"
+#include "system/start.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using test::reduced_machine;

@@ -9,8 +9,8 @@
 
 #include "support/dense.hpp"
 #include "support/train_system.hpp"
+#include "system/start.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using Complex = std::complex<double>;

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
+#include "system/start.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/dimensionless_groups.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 

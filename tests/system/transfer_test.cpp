@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/newton/transfer_modes.hpp"
 #include "support/at_rest.hpp"
 #include "support/film_of.hpp"
 #include "support/half_rotor.hpp"
@@ -15,7 +16,6 @@
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
-#include "whirl/solve/newton/transfer_modes.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/whirl.hpp"
 

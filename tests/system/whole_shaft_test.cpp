@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "support/train_system.hpp"
+#include "system/start.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/solve/bifurcation/nearest_eigenvalues.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using Joining = solve::CycleOptions::Joining;

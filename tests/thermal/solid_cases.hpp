@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "whirl/thermal/bush.hpp"
-#include "whirl/thermal/journal.hpp"
+#include "thermal/bush.hpp"
+#include "thermal/journal.hpp"
 
 namespace whirl::thermal::test {
 

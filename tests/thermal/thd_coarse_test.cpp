@@ -1,5 +1,5 @@
 // A film that starts from its solution on coarser meshes.
-#include "whirl/thermal/thd_coarse.hpp"
+#include "thermal/thd_coarse.hpp"
 
 #include <gtest/gtest.h>
 

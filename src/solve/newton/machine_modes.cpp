@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "solve/newton/port_elimination.hpp"
+#include "solve/newton/transfer_modes.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/solve/newton/transfer_modes.hpp"
 #include "whirl/spectral/count.hpp"
 #include "whirl/spectral/whirl.hpp"
 

@@ -1,4 +1,4 @@
-#include "whirl/solve/newton/transfer_modes.hpp"
+#include "solve/newton/transfer_modes.hpp"
 
 #include <fmt/core.h>
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "solve/newton/rational_fit.hpp"
+#include "solve/newton/transfer_modes.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
-#include "whirl/solve/newton/transfer_modes.hpp"
 
 namespace whirl::solve {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/bearing/bearing_map.hpp"
+#include "study/bearing/bearing_map.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "study/bearing/bearing_map.hpp"
 #include "study/bearing/journal_locus.hpp"
 #include "study/bearing/one_bearing.hpp"
 #include "study/pieces.hpp"
-#include "whirl/study/bearing/bearing_map.hpp"
 #include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {

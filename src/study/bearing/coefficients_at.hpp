@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "study/bearing/dynamic_coefficients.hpp"
 #include "study/bearing/enforced_motion.hpp"
 #include "study/bearing/film_at_rest.hpp"
 #include "study/pieces.hpp"
 #include "whirl/film/coefficients.hpp"
-#include "whirl/study/bearing/dynamic_coefficients.hpp"
 
 namespace whirl::study {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "study/bearing/dynamic_coefficients.hpp"
 #include "study/brief.hpp"
-#include "whirl/study/bearing/dynamic_coefficients.hpp"
 
 namespace whirl::study {
 

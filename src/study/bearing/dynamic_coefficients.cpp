@@ -1,4 +1,4 @@
-#include "whirl/study/bearing/dynamic_coefficients.hpp"
+#include "study/bearing/dynamic_coefficients.hpp"
 
 #include <fmt/core.h>
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "study/bars/film_mesh.hpp"
+#include "study/bearing/dynamic_coefficients.hpp"
 #include "whirl/film/enforced.hpp"
 #include "whirl/film/options.hpp"
-#include "whirl/study/bearing/dynamic_coefficients.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/bearing/gas_bearing.hpp"
+#include "study/bearing/gas_bearing.hpp"
 
 #include <fmt/core.h>
 

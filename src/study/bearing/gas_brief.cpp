@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "study/bearing/gas_bearing.hpp"
 #include "study/brief.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/study/bearing/gas_bearing.hpp"
 
 namespace whirl::study {
 

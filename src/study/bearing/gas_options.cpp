@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "study/bearing/gas_bearing.hpp"
 #include "study/bearing/held_film.hpp"
 #include "whirl/film/gas.hpp"
 #include "whirl/film/options.hpp"
-#include "whirl/study/bearing/gas_bearing.hpp"
 
 namespace whirl::study {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "study/bearing/bearing_map.hpp"
 #include "study/brief.hpp"
-#include "whirl/study/bearing/bearing_map.hpp"
 
 namespace whirl::study {
 

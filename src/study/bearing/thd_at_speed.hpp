@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "whirl/study/bearing/thd_study.hpp"
+#include "study/bearing/thd_study.hpp"
 #include "whirl/thermal/thd_solver.hpp"
 
 namespace whirl::study {

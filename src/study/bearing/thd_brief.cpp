@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "study/bearing/thd_study.hpp"
 #include "study/brief.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/study/bearing/thd_study.hpp"
 
 namespace whirl::study {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "study/bearing/thd_at_speed.hpp"
-#include "whirl/study/bearing/thd_study.hpp"
+#include "study/bearing/thd_study.hpp"
 #include "whirl/thermal/describe.hpp"
 
 namespace whirl::study {

@@ -1,8 +1,8 @@
 #pragma once
 // The fluid and the clearance of a film over the temperature.
 
+#include "study/bearing/thd_study.hpp"
 #include "whirl/io/record.hpp"
-#include "whirl/study/bearing/thd_study.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/bearing/thd_study.hpp"
+#include "study/bearing/thd_study.hpp"
 
 #include <fmt/format.h>
 

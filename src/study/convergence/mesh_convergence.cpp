@@ -1,4 +1,4 @@
-#include "whirl/study/convergence/mesh_convergence.hpp"
+#include "study/convergence/mesh_convergence.hpp"
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 #include "study/bars/branch_brief.hpp"
 #include "study/bifurcation.hpp"
 #include "study/common.hpp"
-#include "study/convergence/mesh_convergence.hpp"
+#include "study/convergence/shared_convergence.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/located.hpp"
 #include "study/pieces.hpp"

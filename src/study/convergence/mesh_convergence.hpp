@@ -1,30 +1,42 @@
 #pragma once
-// What the refinement of cycles and of equilibria share.
+// Bifurcations of a branch of cycles on finer and finer film meshes: observed order, limit, error.
 
-#include <string>
-#include <vector>
+#include <limits>
 
-#include "study/located.hpp"
-#include "whirl/io/table.hpp"
-#include "whirl/study/convergence/mesh_convergence.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
+#include "whirl/study/study.hpp"
 
 namespace whirl::study {
 
-/// The branch of equilibria of that name in the deck; null if there is none.
-[[nodiscard]] const EquilibriumBranch* equilibria_called(const Context& context, const std::string& name);
+struct MeshConvergenceOptions {
+  std::string name;
+  std::string of;                 ///< an earlier cycle_branch of the deck, or a branch born at one of its flips
+  std::vector<int> bifurcations;  ///< which of its bifurcations, 1-based, in the order of summary.json; all if empty
+  int doublings = 2;              ///< of the film meshes, in both directions
+};
+void describe(deck::Description<MeshConvergenceOptions>& d);
 
-/// Rows of one bifurcation on one mesh.
-[[nodiscard]] io::Table convergence_table(const std::string& unit);
+/// Limit of a value on meshes that are doubled each time, the last the finest, and its estimated error.
+struct MeshLimit {
+  double limit = std::numeric_limits<double>::quiet_NaN(), error = limit;
+  double order = limit;  ///< shown by the last three values
+};
+/// Richardson's extrapolation with the observed order of the last three values.
+/// - An order between 1/2 and `theory` (the order of the scheme) has the safety factor 1.25.
+/// - A higher order is chance: the last two meshes agree too well. The order is then `theory`, and the error is at
+///   least what the difference before predicts with it.
+/// - The factor is 3 for an order below 1/2 (taken as 1/2), with two values, where they waver, or for forces with
+/// kinks. Source: Roache (1994).
+[[nodiscard]] MeshLimit mesh_limit(const std::vector<double>& values, double theory = 2, bool kinks = false);
 
-/// The study for a branch of equilibria, `all` its bifurcations and `chosen` which of them, 1-based.
-[[nodiscard]] StudyResult converge(Context& context, const MeshConvergenceOptions& options,
-                                   const EquilibriumBranchOptions& branch, const std::vector<Located>& all,
-                                   const std::vector<int>& chosen);
-
-/// Tables and status of either.
-[[nodiscard]] StudyResult finish_convergence(Context& context, const MeshConvergenceOptions& options,
-                                             const io::Table& rows, const Parameter& parameter,
-                                             const std::string& trouble);
+class MeshConvergence final : public StudyWith<MeshConvergenceOptions> {
+public:
+  static constexpr std::string_view key = "mesh_convergence";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
+  [[nodiscard]] std::string starts_from() const override { return options.of; }
+  [[nodiscard]] StudyResult run(Context& context) override;
+  [[nodiscard]] io::Brief brief(const StudyResult& result, std::span<const io::StudySummary> before) const override;
+};
 
 }  // namespace whirl::study

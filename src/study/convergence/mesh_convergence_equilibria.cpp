@@ -7,7 +7,7 @@
 
 #include "study/bifurcation.hpp"
 #include "study/common.hpp"
-#include "study/convergence/mesh_convergence.hpp"
+#include "study/convergence/shared_convergence.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
 #include "study/located.hpp"
 #include "study/pieces.hpp"

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "study/common.hpp"
+#include "study/convergence/mesh_convergence.hpp"
+#include "study/cycle/cycle_branch.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
 #include "whirl/film/options.hpp"
-#include "whirl/study/convergence/mesh_convergence.hpp"
-#include "whirl/study/cycle/cycle_branch.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
 
 namespace whirl::study {
 

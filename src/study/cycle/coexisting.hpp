@@ -6,12 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "study/parameter.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/solve/branch/deflation.hpp"
 #include "whirl/solve/cycle/cycle.hpp"
-#include "whirl/study/parameter.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {

@@ -1,4 +1,4 @@
-#include "whirl/study/cycle/cycle_branch.hpp"
+#include "study/cycle/cycle_branch.hpp"
 
 #include <fmt/core.h>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "study/cost.hpp"
+#include "study/cycle/cycle_branch.hpp"
 #include "study/layout.hpp"
-#include "whirl/study/cycle/cycle_branch.hpp"
 
 namespace whirl::study {
 

@@ -1,7 +1,7 @@
 #pragma once
 // The answer of a branch of cycles.
 
-#include "whirl/study/cycle/cycle_branch.hpp"
+#include "study/cycle/cycle_branch.hpp"
 
 namespace whirl::study {
 

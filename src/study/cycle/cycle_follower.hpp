@@ -13,6 +13,7 @@
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/common.hpp"
+#include "study/cycle/cycle_branch.hpp"
 #include "study/cycle/cycle_record.hpp"
 #include "study/cycle/node_record.hpp"
 #include "study/located.hpp"
@@ -20,7 +21,6 @@
 #include "study/stored_vector.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
-#include "whirl/study/cycle/cycle_branch.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/equilibrium/alignment.hpp"
+#include "study/equilibrium/alignment.hpp"
 
 #include <fmt/core.h>
 

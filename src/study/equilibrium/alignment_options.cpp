@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "whirl/study/equilibrium/alignment.hpp"
+#include "study/equilibrium/alignment.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
 
 #include <fmt/core.h>
 

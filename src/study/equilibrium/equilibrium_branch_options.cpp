@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "study/cost.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
 
 namespace whirl::study {
 

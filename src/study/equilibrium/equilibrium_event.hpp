@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "study/bars/film_mesh.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/newton/newton.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {

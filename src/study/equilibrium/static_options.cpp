@@ -1,4 +1,4 @@
-#include "whirl/study/equilibrium/static.hpp"
+#include "study/equilibrium/static.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/linear/critical_speed_map.hpp"
+#include "study/linear/critical_speed_map.hpp"
 
 #include <fmt/core.h>
 

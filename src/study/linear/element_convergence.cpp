@@ -1,4 +1,4 @@
-#include "whirl/study/linear/element_convergence.hpp"
+#include "study/linear/element_convergence.hpp"
 
 #include <fmt/core.h>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "study/cost.hpp"
+#include "study/linear/element_convergence.hpp"
 #include "whirl/rotor/describe.hpp"
-#include "whirl/study/linear/element_convergence.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/linear/frequency_response.hpp"
+#include "study/linear/frequency_response.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

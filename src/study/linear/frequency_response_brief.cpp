@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
+#include "study/linear/frequency_response.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/study/linear/frequency_response.hpp"
 
 namespace whirl::study {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "study/cost.hpp"
-#include "whirl/study/linear/frequency_response.hpp"
+#include "study/linear/frequency_response.hpp"
 
 namespace whirl::study {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "study/linear/separation.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/study/linear/separation.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/linear/modes.hpp"
+#include "study/linear/modes.hpp"
 
 #include <fmt/core.h>
 

@@ -9,10 +9,10 @@
 
 #include "study/bars/unresolved.hpp"
 #include "study/linear/linear_brief.hpp"
+#include "study/linear/modes.hpp"
+#include "study/linear/separation.hpp"
 #include "study/linear/shaft_alone.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/study/linear/modes.hpp"
-#include "whirl/study/linear/separation.hpp"
 
 namespace whirl::study {
 namespace {

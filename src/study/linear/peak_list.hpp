@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "study/linear/response_peaks.hpp"
+#include "study/linear/separation.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/summary.hpp"
-#include "whirl/study/linear/separation.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/linear/reduction_errors.hpp"
+#include "study/linear/reduction_errors.hpp"
 
 #include <fmt/core.h>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "study/cost.hpp"
+#include "study/linear/reduction_errors.hpp"
 #include "whirl/film/describe.hpp"
-#include "whirl/study/linear/reduction_errors.hpp"
 
 namespace whirl::study {
 

@@ -7,8 +7,8 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/common.hpp"
 #include "study/linear/response_record.hpp"
+#include "study/linear/unbalance_response.hpp"
 #include "whirl/solve/newton/frequency_solver.hpp"
-#include "whirl/study/linear/unbalance_response.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/study/linear/separation.hpp"
+#include "study/linear/separation.hpp"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Undamped modes of the shaft without its films: bending on pins or free, torsion, and along the axis.
 
-#include "whirl/study/linear/modes.hpp"
+#include "study/linear/modes.hpp"
 
 namespace whirl::study {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "study/linear/frequency_response.hpp"
 #include "whirl/solve/newton/frequency_solver.hpp"
-#include "whirl/study/linear/frequency_response.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {

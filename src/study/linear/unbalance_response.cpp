@@ -1,4 +1,4 @@
-#include "whirl/study/linear/unbalance_response.hpp"
+#include "study/linear/unbalance_response.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

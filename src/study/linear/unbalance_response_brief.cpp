@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "study/linear/linear_brief.hpp"
+#include "study/linear/separation.hpp"
+#include "study/linear/unbalance_response.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/study/linear/separation.hpp"
-#include "whirl/study/linear/unbalance_response.hpp"
 
 namespace whirl::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "whirl/study/locus/locus.hpp"
+#include "study/locus/locus.hpp"
 
 #include <fmt/core.h>
 
@@ -14,6 +14,7 @@
 #include "study/common.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/cycle/cycle_record.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
 #include "study/layout.hpp"
 #include "study/located.hpp"
 #include "study/locus/locus_follower.hpp"
@@ -24,7 +25,6 @@
 #include "whirl/io/table.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
 #include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {

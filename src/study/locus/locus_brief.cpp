@@ -7,7 +7,7 @@
 
 #include "study/bars/beyond.hpp"
 #include "study/bars/branch_brief.hpp"
-#include "whirl/study/locus/locus.hpp"
+#include "study/locus/locus.hpp"
 
 namespace whirl::study {
 namespace {

@@ -13,14 +13,14 @@
 #include "study/bars/error_bar.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/common.hpp"
+#include "study/cycle/cycle_branch.hpp"
 #include "study/cycle/cycle_follower.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
 #include "study/located.hpp"
 #include "study/locus/curve_points.hpp"
+#include "study/locus/locus.hpp"
 #include "study/pieces.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
-#include "whirl/study/cycle/cycle_branch.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
-#include "whirl/study/locus/locus.hpp"
 
 namespace whirl::study {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "whirl/study/cycle/cycle_branch.hpp"
-#include "whirl/study/equilibrium/equilibrium_branch.hpp"
-#include "whirl/study/locus/locus.hpp"
+#include "study/cycle/cycle_branch.hpp"
+#include "study/equilibrium/equilibrium_branch.hpp"
+#include "study/locus/locus.hpp"
 
 namespace whirl::study {
 

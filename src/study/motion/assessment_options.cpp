@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "study/make_plant.hpp"
+#include "study/motion/assessment.hpp"
 #include "study/motion/plane.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/study/motion/assessment.hpp"
 #include "whirl/system/options.hpp"
 
 namespace whirl::study {

@@ -1,4 +1,4 @@
-#include "whirl/study/motion/forces.hpp"
+#include "study/motion/forces.hpp"
 
 #include <fmt/core.h>
 

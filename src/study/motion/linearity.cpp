@@ -1,4 +1,4 @@
-#include "whirl/study/motion/linearity.hpp"
+#include "study/motion/linearity.hpp"
 
 #include <fmt/core.h>
 

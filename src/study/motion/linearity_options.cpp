@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "study/cost.hpp"
-#include "whirl/study/motion/linearity.hpp"
+#include "study/motion/linearity.hpp"
 
 namespace whirl::study {
 

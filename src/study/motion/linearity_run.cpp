@@ -7,9 +7,9 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/growth.hpp"
 #include "study/make_plant.hpp"
+#include "study/motion/forces.hpp"
 #include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/study/motion/forces.hpp"
 #include "whirl/transient/integrator.hpp"
 
 namespace whirl::study {

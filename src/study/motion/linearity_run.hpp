@@ -8,8 +8,8 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/layout.hpp"
+#include "study/motion/linearity.hpp"
 #include "whirl/solve/newton/frequency_solver.hpp"
-#include "whirl/study/motion/linearity.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/transient/estimators.hpp"
 #include "whirl/transient/force.hpp"

@@ -1,4 +1,4 @@
-#include "whirl/study/motion/motion.hpp"
+#include "study/motion/motion.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

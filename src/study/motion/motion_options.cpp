@@ -1,9 +1,9 @@
 #include <fmt/core.h>
 
 #include "study/cost.hpp"
+#include "study/motion/motion.hpp"
 #include "study/motion/motion_start.hpp"
 #include "whirl/film/options.hpp"
-#include "whirl/study/motion/motion.hpp"
 
 namespace whirl::study {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "study/motion/motion.hpp"
 #include "study/motion/section_record.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
-#include "whirl/study/motion/motion.hpp"
 #include "whirl/system/plant.hpp"
 #include "whirl/transient/classify.hpp"
 #include "whirl/transient/exponents.hpp"

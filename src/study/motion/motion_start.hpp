@@ -7,7 +7,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/layout.hpp"
-#include "whirl/study/motion/motion.hpp"
+#include "study/motion/motion.hpp"
 #include "whirl/system/plant.hpp"
 #include "whirl/transient/integrator.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "study/motion/assessment.hpp"
 #include "whirl/io/record.hpp"
-#include "whirl/study/motion/assessment.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {

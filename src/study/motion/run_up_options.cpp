@@ -1,4 +1,4 @@
-#include "whirl/study/motion/run_up.hpp"
+#include "study/motion/run_up.hpp"
 
 #include <fmt/core.h>
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "study/motion/assessment.hpp"
 #include "whirl/io/record.hpp"
-#include "whirl/study/motion/assessment.hpp"
 
 namespace whirl::study {
 

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "study/brief.hpp"
+#include "study/sweep/verdict_words.hpp"
 #include "whirl/study/sweep/sweep.hpp"
-#include "whirl/study/sweep/verdict_words.hpp"
 
 namespace whirl::study {
 namespace {

@@ -11,7 +11,7 @@
 #include <set>
 #include <string_view>
 
-#include "whirl/study/sweep/verdict_words.hpp"
+#include "study/sweep/verdict_words.hpp"
 
 namespace whirl::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "whirl/study/sweep/verdict_words.hpp"
+#include "study/sweep/verdict_words.hpp"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Equilibria over a parameter, with folds and Hopf bifurcations located.
 
-#include "whirl/study/parameter.hpp"
+#include "study/parameter.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "whirl/study/motion/motion.hpp"
+#include "study/motion/motion.hpp"
 
 namespace whirl::study {
 

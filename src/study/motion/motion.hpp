@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "whirl/study/motion/assessment.hpp"
-#include "whirl/study/motion/forces.hpp"
+#include "study/motion/assessment.hpp"
+#include "study/motion/forces.hpp"
 #include "whirl/transient/scheme.hpp"
 
 namespace whirl::study {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "whirl/study/parameter.hpp"
+#include "study/parameter.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {
