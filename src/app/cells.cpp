@@ -57,7 +57,7 @@ std::string in_lines(const std::string& text, std::size_t indent) {
   return out + line + "\n";
 }
 
-std::string Grid::text() const {
+std::string CellTable::text() const {
   if (rows_.size() < 2) return {};
   constexpr std::size_t indent = 4, gap = 2;
   std::vector<std::size_t> width(rows_[0].size()), shown;

@@ -20,9 +20,9 @@ namespace whirl::app {
 /// Rows of cells, right-aligned below their heads, the first column left-aligned. Columns without a number are left
 /// out. A table wider than widest_line goes on below with the first column again. A remark stands below its row, in the
 /// last block.
-class Grid {
+class CellTable {
 public:
-  explicit Grid(std::vector<std::string> heads) : rows_{std::move(heads)} {}
+  explicit CellTable(std::vector<std::string> heads) : rows_{std::move(heads)} {}
   void add(std::vector<std::string> row, std::string remark = {}) {
     rows_.push_back(std::move(row));
     remarks_.resize(rows_.size());

@@ -43,7 +43,7 @@ std::string brief_text(const io::Brief& brief) {
       const io::BriefColumn& c = t.columns[k];
       heads.push_back(c.name + (c.shown.empty() ? "" : " [" + c.shown + "]"));
     }
-    Grid grid(std::move(heads));
+    CellTable grid(std::move(heads));
     for (const auto& row : t.rows) {
       std::vector<std::string> cells;
       for (std::size_t k = 0; k < count; ++k) cells.push_back(row[k].text.empty() ? "-" : row[k].text);

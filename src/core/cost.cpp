@@ -13,20 +13,20 @@ double cube(double n) {
 
 // A column through an interval: blocks of degree x degree by which films see their neighbours, down and up the band,
 // and six inputs and forces of theirs. Blocks of less than 4 x 4 cost as much.
-double film_column(const Cycle& c) {
+double film_column(const CycleCounts& c) {
   const double degree = std::max<double>(4, static_cast<double>(c.degree));
   return degree * degree * static_cast<double>(c.own) * static_cast<double>(2 * c.band + 12);
 }
 
 // The coordinates: a dense LU of half as many states as there are at all points, of which rows q' = v are eliminated.
-double coordinate_column(const Cycle& c) {
+double coordinate_column(const CycleCounts& c) {
   const auto n = static_cast<double>(c.states - c.own), m = static_cast<double>(c.degree);
   return m * n * n + m * m * n * n / 4 + m * m * n * static_cast<double>(c.forces);
 }
 
 }  // namespace
 
-double dense_joining(const Cycle& c) {
+double dense_joining(const CycleCounts& c) {
   const auto n = static_cast<double>(c.states), intervals = static_cast<double>(c.intervals);
   // Without films the map of an interval is formed and multiplied to those before it.
   const double column = c.own > 0 ? coordinate_column(c) + scattered * film_column(c)
@@ -35,7 +35,7 @@ double dense_joining(const Cycle& c) {
 }
 
 // Setting up GMRES and the search takes eight calls.
-double sweeps(const Cycle& c) {
+double sweeps(const CycleCounts& c) {
   return columns_of_sweeps * static_cast<double>(c.intervals) *
              (streamed * coordinate_column(c) + scattered * film_column(c)) +
          8 * call;
@@ -43,7 +43,7 @@ double sweeps(const Cycle& c) {
 
 // With f entries a row in the factors, f^2 to make them and 2 f a column, in complex numbers; modes fill registers,
 // columns of a sweep go one by one. Columns of an iteration: forces, border, and two for each step of GMRES.
-double time_modes(const Cycle& c) {
+double time_modes(const CycleCounts& c) {
   const double rows = static_cast<double>(c.intervals) * static_cast<double>(c.degree * c.states),
                f = static_cast<double>(c.entries) / static_cast<double>(c.states),
                columns = static_cast<double>(c.forces + 2 * c.borders) + 8;

@@ -17,7 +17,7 @@ namespace whirl::film {
 
 // Between every node and the one `ahead` of it in the work space, a and b, goes f = w ((h_a + h_b)/2)^3 (P_b - P_a)
 // from b to a: df/dh_a = df/dh_b = q, df/dP_b = -df/dP_a = k.
-struct Faces {
+struct LinerFaces {
   std::vector<double> f, k, q;
   void set(double w, std::size_t ahead, const std::vector<double>& h, const std::vector<double>& p, Need need) {
     for (auto* values : {&f, &k, &q}) values->resize(h.size() - ahead);
@@ -118,7 +118,7 @@ private:
   std::vector<double> h_, u_, moved_;
   Carried carried_;
   std::vector<LinerLaw::Edge> edge_;  // of both edges of a line
-  Faces around_, along_;
+  LinerFaces around_, along_;
   std::array<std::vector<double>, 2> slope_;  // d force*/d P at the states of the lines at hand
   std::vector<int> mixed_;                    // those in front of cells in which P changes its sign
 };

@@ -74,13 +74,13 @@ double memory_of_cycles(const system::Machine& machine, double intervals, double
   const double films = rotor ? numbers_of_films(machine, stages, width) : 0;
   // Of a whole shaft no interval has a matrix, only the modes in time have their factors.
   // A node sees two others: 13 entries a state.
-  const core::cost::Cycle counts{.states = std::llround(n),
-                                 .intervals = std::llround(intervals),
-                                 .degree = std::llround(stages),
-                                 .own = std::llround(n_film_states(machine)),
-                                 .band = width,
-                                 .forces = 2 * static_cast<std::int64_t>(machine.bearings.size()),
-                                 .entries = std::llround(13 * n)};
+  const core::cost::CycleCounts counts{.states = std::llround(n),
+                                       .intervals = std::llround(intervals),
+                                       .degree = std::llround(stages),
+                                       .own = std::llround(n_film_states(machine)),
+                                       .band = width,
+                                       .forces = 2 * static_cast<std::int64_t>(machine.bearings.size()),
+                                       .entries = std::llround(13 * n)};
   const bool sweeps = films > 0 && core::cost::sweeps(counts) < core::cost::dense_joining(counts);
   const bool whole = radau && films == 0 && rotor && machine.rotor.type == rotor::Options::Type::shaft &&
                      machine.rotor.reduction.type == rotor::Reduction::Type::none &&

@@ -12,7 +12,7 @@ namespace whirl::system {
 /// Inputs are (x, y, vx, vy) of each journal relative to its pedestal (elevation not subtracted), forces (Fx, Fy) of
 /// each film on its journal; with the slopes of the shaft behind x, y, their rates behind vx, vy and the moments behind
 /// Fx, Fy where a film tilts.
-class RotorSystem::MachineBlocks : public problem::Structure {
+class RotorSystem::MachineBlocks : public problem::BlockStructure {
 public:
   explicit MachineBlocks(RotorSystem& system);
   /// To be called after each build of the system: all blocks are made anew, references to them stay valid.

@@ -130,7 +130,7 @@ std::vector<problem::Field> RotorSystem::fields() const {
   return out;
 }
 
-problem::Structure* RotorSystem::structure() {
+problem::BlockStructure* RotorSystem::structure() {
   if (core::size_of(comm_) != 1) return nullptr;
   if (blocks_) return blocks_.get();
   prepare();

@@ -14,7 +14,7 @@ constexpr PetscInt most_own_states = 50000;
 
 bool is_thin(problem::System& system, Algebra algebra) {
   if (algebra == Algebra::assembled || core::size_of(system.comm()) > 1) return false;
-  const problem::Structure* s = system.structure();
+  const problem::BlockStructure* s = system.structure();
   return s && system.size() - s->size() <= most_own_states;
 }
 

@@ -31,7 +31,7 @@ struct ThinOperator {
 class ThinInverse {
 public:
   /// `point` with sparse blocks and `structure` outlive this.
-  ThinInverse(const solve::ScaledPoint& point, const problem::Structure& structure)
+  ThinInverse(const solve::ScaledPoint& point, const problem::BlockStructure& structure)
       : point_(point), structure_(structure) {}
 
   /// To |y - A x| <= tolerance |y|.
@@ -80,7 +80,7 @@ private:
   [[nodiscard]] bool exact(const ThinOperator& a) const;
 
   const solve::ScaledPoint& point_;
-  const problem::Structure& structure_;
+  const problem::BlockStructure& structure_;
   std::vector<std::unique_ptr<Factors>> kept_;
   Factors* now_ = nullptr;  // what was prepared:
   const ThinOperator* prepared_ = nullptr;

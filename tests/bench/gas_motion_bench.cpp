@@ -98,7 +98,7 @@ double difference(const Run& a, const Run& b) {
 // dx/dt = -(dF/dx')^-1 F, the matrix as at `x`.
 class Explicit {
 public:
-  Explicit(solve::ScaledPoint& point, const problem::Structure& structure, const VectorXd& x)
+  Explicit(solve::ScaledPoint& point, const problem::BlockStructure& structure, const VectorXd& x)
       : point_(point), n_(structure.size()), f_(x.size()) {
     solve::PointState at;
     const VectorXd rest = VectorXd::Zero(x.size());

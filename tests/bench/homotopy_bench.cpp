@@ -59,9 +59,10 @@ system::Train train() {
 }
 
 // Structure of the machine without unbalance, with the force a* Omega^2 u(angle) added to its load.
-class ForcedStructure : public problem::Structure {
+class ForcedStructure : public problem::BlockStructure {
 public:
-  ForcedStructure(problem::Structure& rest, const std::function<void(double, double, double*)>& add, const double& a)
+  ForcedStructure(problem::BlockStructure& rest, const std::function<void(double, double, double*)>& add,
+                  const double& a)
       : rest_(rest), add_(add), a_(a) {}
   [[nodiscard]] Index size() const override { return rest_.size(); }
   [[nodiscard]] Index n_forces() const override { return rest_.n_forces(); }
@@ -86,7 +87,7 @@ public:
   }
 
 private:
-  problem::Structure& rest_;
+  problem::BlockStructure& rest_;
   std::function<void(double, double, double*)> add_;  // += a Omega^2 u(angle)
   const double& a_;
 };
@@ -121,7 +122,7 @@ public:
     const core::WriteArray fa(f);
     force(angle, -1, fa.data());
   }
-  [[nodiscard]] problem::Structure* structure() override { return &structure_; }
+  [[nodiscard]] problem::BlockStructure* structure() override { return &structure_; }
   void scales(Vec state, Vec residual) override { rotor_.scales(state, residual); }
   [[nodiscard]] VectorXd equilibrium() {
     core::Vector x = system::static_guess(rotor_);

@@ -28,7 +28,7 @@ TEST(Cost, SweepsBeginAtTwentyStatesOfFilms) {
   for (const auto& [degree, intervals] : {std::pair{4, 40}, {2, 60}}) {
     const auto at = change(
         [degree = degree, intervals = intervals](std::int64_t n) {
-          const cost::Cycle c{
+          const cost::CycleCounts c{
               .states = n + 4, .intervals = intervals, .degree = degree, .own = n, .band = 3, .forces = 2};
           return cost::sweeps(c) < cost::dense_joining(c);
         },
@@ -40,7 +40,7 @@ TEST(Cost, SweepsBeginAtTwentyStatesOfFilms) {
 
 // Five films of twelve states behind 104 of a train.
 TEST(Cost, OfATrainInFilmsWithStatesSweepsAreCheaper) {
-  const cost::Cycle c{.states = 164, .intervals = 60, .degree = 2, .own = 60, .band = 3, .forces = 10};
+  const cost::CycleCounts c{.states = 164, .intervals = 60, .degree = 2, .own = 60, .band = 3, .forces = 10};
   EXPECT_LT(cost::sweeps(c), cost::dense_joining(c));
 }
 
@@ -48,7 +48,7 @@ TEST(Cost, OfATrainInFilmsWithStatesSweepsAreCheaper) {
 // 28.0 against 26.2, at 168 52.7 against 33.7.
 TEST(Cost, TimeModesBeginAtAHundredStatesOfAShaft) {
   const auto modes = [](std::int64_t n, std::int64_t entries) {
-    const cost::Cycle c{.states = n, .intervals = 60, .degree = 2, .forces = 4, .entries = entries};
+    const cost::CycleCounts c{.states = n, .intervals = 60, .degree = 2, .forces = 4, .entries = entries};
     return cost::time_modes(c) < cost::dense_joining(c);
   };
   const auto at = change([&](std::int64_t n) { return modes(n, 13 * n); }, 8);

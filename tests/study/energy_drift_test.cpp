@@ -42,7 +42,7 @@ system::Train machine() {
 
 // q'^T M q'/2 + q^T K q/2 and what the springs hold [J].
 double energy(system::RotorSystem& s, Vec x) {
-  problem::Structure& blocks = *s.structure();
+  problem::BlockStructure& blocks = *s.structure();
   const core::ReadArray a(x);
   const Eigen::Map<const Eigen::VectorXd> all(a.data(), a.size());
   double sum = 0;

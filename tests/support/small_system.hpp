@@ -135,10 +135,10 @@ public:
     structure_.load_ = [load](double angle, Complex p) { return load(angle, p); };
     structure_.forces_ = [forces](const Eigen::VectorXcd& w, Complex p) { return forces(w, p); };
   }
-  [[nodiscard]] problem::Structure* structure() override { return &structure_; }
+  [[nodiscard]] problem::BlockStructure* structure() override { return &structure_; }
 
 private:
-  class Told : public problem::Structure {
+  class Told : public problem::BlockStructure {
   public:
     Told(const StructuredSystem& system, const Blocks& blocks)
         : system_(system), blocks_(blocks), l1_(told(blocks.l1)), b_(told(blocks.b)), c_(told(blocks.c)) {}

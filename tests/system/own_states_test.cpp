@@ -110,7 +110,7 @@ TEST(OwnStates, CondensedIntervalsAreTheDenseMatrix) {
   for (const Mix mix : {Mix::plain, Mix::as_source, Mix::damped}) {
     system::RotorSystem s(PETSC_COMM_SELF, mixed(mix), speed);
     EXPECT_EQ(s.constant_rates(), mix != Mix::damped);
-    problem::Structure* structure = s.structure();
+    problem::BlockStructure* structure = s.structure();
     ASSERT_NE(structure, nullptr);
     ASSERT_EQ(structure->own().size(), 3U);
     solve::ScaledPoint point(s, structure), plain(s, nullptr);

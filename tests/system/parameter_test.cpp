@@ -264,7 +264,7 @@ TEST_P(Parameter, BlocksFollow) {
       const std::vector<double> all = s.gather(v.get());
       return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(all.data(), s.size()));
     };
-    problem::Structure& blocks = *s.structure();
+    problem::BlockStructure& blocks = *s.structure();
     const Eigen::VectorXd at = vector(x), moving = vector(rate), wanted = vector(df);
     problem::Films films;
     blocks.films(blocks.c() * at.head(blocks.size()), at.data() + blocks.size(), moving.data() + blocks.size(), true,

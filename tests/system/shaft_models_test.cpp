@@ -167,7 +167,7 @@ TEST(ShaftModels, InStateSpaceParametersAndBlocksAgree) {
   EXPECT_GE(r.parameter_order, 1.9);
   s.residual(0.7, x.get(), rate.get(), f.get());
   const core::ReadArray xa(x.get()), ra(rate.get()), fa(f.get());
-  problem::Structure& blocks = *s.structure();
+  problem::BlockStructure& blocks = *s.structure();
   const Eigen::Map<const Eigen::VectorXd> state(xa.data(), xa.size()), rates(ra.data(), ra.size()),
       wanted(fa.data(), fa.size());
   problem::Films films;

@@ -100,7 +100,7 @@ TEST(Tilt, BlocksAreTheSameEquations) {
       for (Index i = 0; i < n; ++i) a[i] += 3e-6 * std::sin(3.7 * static_cast<double>(i)) * (i % 2 ? 300 : 1);
     }
     const VectorXd at = test::dense(x.get()), dot = test::dense(rate.get());
-    problem::Structure& structure = *s.structure();
+    problem::BlockStructure& structure = *s.structure();
     ASSERT_EQ(structure.n_forces(), 8);
     ASSERT_EQ(structure.n_inputs(), 16);
     problem::Films films;

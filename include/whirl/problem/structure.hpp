@@ -53,9 +53,9 @@ struct Films {
 /// (journal forces of the films) that depend on the thin inputs C x [w] (positions and velocities of the journals in
 /// their bearings) and on own states only, r, w << n. All on one rank, SI. References stay valid for the life of the
 /// system; the blocks behind them follow its parameter. Those who want them dense convert them.
-class Structure {
+class BlockStructure {
 public:
-  virtual ~Structure() = default;
+  virtual ~BlockStructure() = default;
 
   /// n, r, w.
   [[nodiscard]] virtual Eigen::Index size() const = 0;

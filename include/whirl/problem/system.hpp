@@ -14,7 +14,7 @@
 
 namespace whirl::problem {
 
-class Structure;
+class BlockStructure;
 
 /// States of one kind of one part (a body or a film) on this rank: local rows [begin, end) of x, and as many again
 /// `stride` further on, `repeats` times in all.
@@ -93,7 +93,7 @@ public:
 
   /// Linear blocks and thin couplings if this rank holds the whole system (communicator of size 1) and it has them,
   /// else nullptr. Not collective.
-  [[nodiscard]] virtual Structure* structure() { return nullptr; }
+  [[nodiscard]] virtual BlockStructure* structure() { return nullptr; }
 };
 
 }  // namespace whirl::problem

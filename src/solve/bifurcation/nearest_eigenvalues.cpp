@@ -10,7 +10,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 // With y = (A + sigma L1)^-1 L1 x and A v = -lambda L1 v, the part along v grows by 1/(sigma - lambda).
-ArrayXcd nearest_eigenvalues(problem::Structure& structure, const MatrixXd& tangents, const ArrayXcd& starts) {
+ArrayXcd nearest_eigenvalues(problem::BlockStructure& structure, const MatrixXd& tangents, const ArrayXcd& starts) {
   core::require(structure.own().empty(), "the films have no own states");
   const Index n = structure.size(), lanes = starts.size();
   Pencil::Matrix held =

@@ -25,13 +25,13 @@ constexpr double two_pi = 2 * std::numbers::pi;
 
 using Joining = CycleOptions::Joining;
 
-core::cost::Cycle counts(const CycleOptions& options, problem::Structure& structure, std::size_t intervals) {
-  core::cost::Cycle c{.states = structure.size(),
-                      .borders = options.autonomous ? 2 : 1,
-                      .intervals = static_cast<Index>(intervals),
-                      .degree = options.degree,
-                      .forces = structure.n_forces(),
-                      .entries = structure.l1().nonZeros() + structure.l0().nonZeros()};
+core::cost::CycleCounts counts(const CycleOptions& options, problem::BlockStructure& structure, std::size_t intervals) {
+  core::cost::CycleCounts c{.states = structure.size(),
+                            .borders = options.autonomous ? 2 : 1,
+                            .intervals = static_cast<Index>(intervals),
+                            .degree = options.degree,
+                            .forces = structure.n_forces(),
+                            .entries = structure.l1().nonZeros() + structure.l0().nonZeros()};
   for (const problem::OwnStates& film : structure.own()) {
     c.states += film.count;
     if (options.joining == Joining::one_by_one) continue;  // dense maps, whatever is behind them
@@ -43,12 +43,12 @@ core::cost::Cycle counts(const CycleOptions& options, problem::Structure& struct
 
 }  // namespace
 
-CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Structure* structure,
+CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::BlockStructure* structure,
                                        std::size_t intervals) {
   if (!structure) return Way::dense;
   if (!structure->own().empty()) return Way::own_states;
   const auto modes_are_cheaper = [&] {
-    const core::cost::Cycle c = counts(options, *structure, intervals);
+    const core::cost::CycleCounts c = counts(options, *structure, intervals);
     return core::cost::time_modes(c) < core::cost::dense_joining(c);
   };
   if (options.points == Points::radau &&
@@ -74,7 +74,7 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
   run_.borders = borders_;
   run_.multipliers = options.multipliers;
   const auto sweeps_are_cheaper = [&] {
-    const core::cost::Cycle c = counts(options, *structure_, mesh.size() - 1);
+    const core::cost::CycleCounts c = counts(options, *structure_, mesh.size() - 1);
     return core::cost::sweeps(c) < core::cost::dense_joining(c);
   };
   const bool sweeps = options.joining == Joining::sweeps ||

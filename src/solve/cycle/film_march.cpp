@@ -23,7 +23,7 @@ constexpr int most_laps = 60;
 
 }  // namespace
 
-FilmMarch::FilmMarch(const Scheme& scheme, problem::Structure& structure, ScaledPoint& point)
+FilmMarch::FilmMarch(const Scheme& scheme, problem::BlockStructure& structure, ScaledPoint& point)
     : scheme_(scheme), structure_(structure), point_(point), at_(static_cast<std::size_t>(scheme.degree)) {
   for (const problem::OwnStates& film : structure.own()) {
     blocks_.push_back(film.settles ? make_own_block(scheme, film) : nullptr);

@@ -17,7 +17,7 @@ namespace whirl::solve {
 class FilmMarch {
 public:
   /// All outlive this.
-  FilmMarch(const Scheme& scheme, problem::Structure& structure, ScaledPoint& point);
+  FilmMarch(const Scheme& scheme, problem::BlockStructure& structure, ScaledPoint& point);
   ~FilmMarch();
   /// Moves these states at the nodes `own` [n x m] of an interval of length `length` (s) that begins at `start` [n],
   /// all scaled; returns how far they move at its end. Throws core::DomainError, core::NotConverged. Not collective.
@@ -27,7 +27,7 @@ private:
   void step(double length, Eigen::Ref<Eigen::MatrixXd> nodes, double& largest);
 
   const Scheme& scheme_;
-  problem::Structure& structure_;
+  problem::BlockStructure& structure_;
   ScaledPoint& point_;
   std::vector<std::unique_ptr<OwnBlock>> blocks_;  // null for films that do not settle
   std::vector<PointState> at_;

@@ -35,7 +35,7 @@ void scale(const problem::SparseBlock& block, const VectorXd& rows, const Vector
 
 }  // namespace
 
-ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure, bool sparse)
+ScaledPoint::ScaledPoint(problem::System& system, problem::BlockStructure* structure, bool sparse)
     : system_(system), structure_(structure), sparse_(sparse && structure) {
   core::require(core::size_of(system.comm()) == 1, "a point of a cycle needs the whole system on one rank");
   x_ = core::make_vector(system.comm(), system.size(), PETSC_DETERMINE);

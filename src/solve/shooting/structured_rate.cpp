@@ -37,7 +37,7 @@ Map<const Pack> shifted(const double* from) {
 std::unique_ptr<StructuredRate> StructuredRate::make(problem::System& system) {
   if (core::size_of(system.comm()) > 1 || !system.structure()) return nullptr;
   // Dense blocks may make products dearer than those of a sparse matrix, in which a state of a film has five entries.
-  problem::Structure& s = *system.structure();
+  problem::BlockStructure& s = *system.structure();
   const Index entries = s.l1().nonZeros() + s.l0().nonZeros() + 5 * (system.size() - s.size());
   if (core::cost::dense_product(s.size()) > core::cost::sparse_product(entries)) return nullptr;
   std::unique_ptr<StructuredRate> out(new StructuredRate(system));

@@ -24,7 +24,7 @@ using Eigen::VectorXcd;
 using Sparse = Eigen::SparseMatrix<double>;
 
 // A = dF/dx with the films as `films` says.
-Sparse linearised(problem::Structure& machine, const MatrixXd& films) {
+Sparse linearised(problem::BlockStructure& machine, const MatrixXd& films) {
   return machine.l0() - Sparse(machine.b() * Sparse(films.sparseView()) * machine.c());
 }
 
@@ -62,7 +62,7 @@ MatrixXd whole_states(const system::RotorSystem& reduced) {
 }
 
 Orbit orbit_from_rest(system::RotorSystem& system, const MatrixXd& films, int node, double step, Index count) {
-  problem::Structure& machine = *system.structure();
+  problem::BlockStructure& machine = *system.structure();
   const MatrixXd a = linearised(machine, films), rates = machine.l1();
   const Index n = machine.size();
   const double omega = system.speed();
@@ -95,7 +95,7 @@ Orbit orbit_from_rest(system::RotorSystem& system, const MatrixXd& films, int no
 }
 
 WholeModes::WholeModes(system::RotorSystem& system, Vec x, int count) {
-  problem::Structure& machine = *system.structure();
+  problem::BlockStructure& machine = *system.structure();
   const Index n = machine.size();
   const std::vector<double> state = system.gather(x);
   problem::Films films;
@@ -160,7 +160,7 @@ Complex WholeModes::energy(const VectorXcd& a, const VectorXcd& b) const {
 
 // Eigenvalues of -A^-1 L1 are 1/s: the slowest ones are the largest, and keep their digits.
 WholeModes::Errors WholeModes::errors(system::RotorSystem& reduced) const {
-  problem::Structure& machine = *reduced.structure();
+  problem::BlockStructure& machine = *reduced.structure();
   const MatrixXd a = linearised(machine, films_), rates = machine.l1();
   const spectral::Eigenpairs pairs = spectral::eigenpairs(-core::DenseLu<double>(a).solve(rates));
   std::vector<std::pair<double, Index>> order;

@@ -21,24 +21,24 @@ double Revolution::distance(std::size_t place, const std::array<double, 2>& cent
   return most;
 }
 
-void Neighbours::add(Revolution next) {
+void NearRevolutions::add(Revolution next) {
   all_.push_back(std::move(next));
 }
 
-long Neighbours::ready() const {
+long NearRevolutions::ready() const {
   return added() < static_cast<long>(width) ? 0 : added() - static_cast<long>(width / 2);
 }
 
-const Revolution& Neighbours::at(long revolution) const {
+const Revolution& NearRevolutions::at(long revolution) const {
   return all_.at(static_cast<std::size_t>(revolution - first_));
 }
 
-long Neighbours::window_begin(long revolution) const {
+long NearRevolutions::window_begin(long revolution) const {
   const long n = static_cast<long>(width);
   return std::clamp(revolution - n / 2, 0L, std::max(0L, added() - n));
 }
 
-std::array<double, 2> Neighbours::centre(long revolution, std::size_t place) const {
+std::array<double, 2> NearRevolutions::centre(long revolution, std::size_t place) const {
   const long begin = window_begin(revolution), end = std::min(begin + static_cast<long>(width), added());
   core::require(begin >= first_, "the neighbours of a revolution were forgotten");
   const std::size_t per = all_.front().samples[place].size();
@@ -55,14 +55,14 @@ std::array<double, 2> Neighbours::centre(long revolution, std::size_t place) con
   return {sum[0] / weights, sum[1] / weights};
 }
 
-void Neighbours::forget_before(long revolution) {
+void NearRevolutions::forget_before(long revolution) {
   // Those that end the record use a window that begins earlier.
   const long needed =
       std::max(0L, std::min(revolution - static_cast<long>(width / 2), added() - static_cast<long>(width)));
   for (; first_ < needed; ++first_) all_.pop_front();
 }
 
-std::vector<double> Neighbours::flat() const {
+std::vector<double> NearRevolutions::flat() const {
   std::vector<double> out;
   for (const Revolution& r : all_)
     for (const auto& place : r.samples)
@@ -70,7 +70,7 @@ std::vector<double> Neighbours::flat() const {
   return out;
 }
 
-void Neighbours::set(long first, const std::vector<double>& flat, std::size_t places, std::size_t samples) {
+void NearRevolutions::set(long first, const std::vector<double>& flat, std::size_t places, std::size_t samples) {
   first_ = first;
   all_.clear();
   const std::size_t each = 2 * places * samples;

@@ -24,7 +24,7 @@ struct Revolution {
 /// way out on its orbit, and the distance from there is too large. The mean position is therefore that of nine
 /// revolutions, weighted by Hann's window: whole orders leave nothing in it, whirl at 0.4 to 0.6 of the speed at most 1
 /// % of its amplitude, at 0.25 of the speed nothing, and a mean position that drifts evenly is that of the middle.
-class Neighbours {
+class NearRevolutions {
 public:
   static constexpr std::size_t width = 9;  // revolutions of the mean
 

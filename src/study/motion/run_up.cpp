@@ -422,7 +422,7 @@ private:
   OpenBores bores_;
   io::Table table_;
   std::vector<double> kept_;  // [sample][place and node][x, y]
-  Neighbours neighbours_;
+  NearRevolutions neighbours_;
   double slowest_ = io::no_value;      // see slowest_of(); not a number: not known
   StableSpeeds stable_;                // equilibria at constant speed
   std::pair<Growth, double> fastest_;  // of the most unstable one of these, and its speed

@@ -12,7 +12,7 @@ namespace whirl::solve {
 ///
 /// Meant for starts that are nearly right, such as eigenvalues of a reduced model: where two eigenvalues are as near,
 /// the answer lies between them or is one of the two. Not collective. Throws core::NotConverged.
-[[nodiscard]] Eigen::ArrayXcd nearest_eigenvalues(problem::Structure& structure, const Eigen::MatrixXd& tangents,
+[[nodiscard]] Eigen::ArrayXcd nearest_eigenvalues(problem::BlockStructure& structure, const Eigen::MatrixXd& tangents,
                                                   const Eigen::ArrayXcd& starts);
 
 }  // namespace whirl::solve

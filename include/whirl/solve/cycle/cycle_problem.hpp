@@ -172,12 +172,13 @@ private:
 
   /// How an interval is condensed.
   enum class Way { dense, low_rank, own_states, sparse };
-  [[nodiscard]] static Way way_of(const CycleOptions& options, problem::Structure* structure, std::size_t intervals);
+  [[nodiscard]] static Way way_of(const CycleOptions& options, problem::BlockStructure* structure,
+                                  std::size_t intervals);
 
   MPI_Comm comm_;
   int rank_, size_;
   problem::System& system_;
-  problem::Structure* structure_;
+  problem::BlockStructure* structure_;
   CycleOptions options_;
   Way way_;
   ScaledPoint point_;

@@ -21,7 +21,7 @@ class ScaledPoint {
 public:
   /// `system` lives on a communicator of size 1 and outlives this; `structure` may be null. With `sparse` the blocks of
   /// the structure stay sparse; small machines are quicker with dense ones.
-  ScaledPoint(problem::System& system, problem::Structure* structure, bool sparse = false);
+  ScaledPoint(problem::System& system, problem::BlockStructure* structure, bool sparse = false);
 
   [[nodiscard]] Eigen::Index size() const { return state_scale_.size(); }
   /// Own states of films as the structure tells them; they stand behind all others.
@@ -70,7 +70,7 @@ private:
   }
 
   problem::System& system_;
-  problem::Structure* structure_;
+  problem::BlockStructure* structure_;
   bool sparse_;
   Eigen::VectorXd state_scale_, residual_scale_;
   Eigen::VectorXd load_, inputs_, d_parameter_;  // work space
