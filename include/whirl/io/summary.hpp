@@ -59,8 +59,10 @@ struct ModeEntry {
   std::string whirl = {};  ///< forward, backward, mixed, planar, either (equal modes)
   std::string speed_unit = "rad/s";
   std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
-  std::string stability = {};               ///< stable, undamped (its real part is rounding), unstable; or empty
-  std::string whirl_rule = {};              ///< as `whirl`, by the nodes' sense alone; or empty
+  /// "stable", "unstable", "undamped" (its real part is rounding), "undetermined" (its bar contains zero), "not
+  /// resolved" (a vibration of single elements of the shaft, which decides on nothing); empty where nobody looked.
+  std::string stability = {};
+  std::string whirl_rule = {};  ///< as `whirl`, by the nodes' sense alone; or empty
 };
 
 /// A column of numbers over the points of a curve.
