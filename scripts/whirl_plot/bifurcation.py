@@ -187,7 +187,8 @@ def mark_walls(axis, study, b, scale, direction="y"):
     for wall, sign in zip(reach(pads, angles) if pads else (), (1, -1)):
         at = sign * wall * scale
         if np.isfinite(at) and low - 0.15 * (high - low) <= at <= high + 0.15 * (high - low):
-            axis.set_ylim(min(low, at - 0.02 * (high - low)), max(high, at + 0.02 * (high - low)))
+            below, above = axis.get_ylim()
+            axis.set_ylim(min(below, at - 0.02 * (high - low)), max(above, at + 0.02 * (high - low)))
             axis.axhline(at, color=GREY, linewidth=0.9, zorder=0.6)
             axis.annotate("undeformed wall" if has_liner(study, b) else "wall", (1, at), xycoords=axis.get_yaxis_transform(), xytext=(-2, 1), textcoords="offset points", ha="right", va="bottom", fontsize=6.5,
                           color=GREY)

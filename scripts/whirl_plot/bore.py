@@ -47,7 +47,7 @@ def distance_in_words(study, b, x, y):
     words = f"\n|e|/c = {ratio:.3f}"
     wall = float(reach(pads, np.array([np.arctan2(y, x)]))[0])
     if len(pads) > 1:
-        words += f", {e / wall:.3f} of the way to the wall"
+        words += f"\n{e / wall:.3f} of the way to the wall"
     return words
 
 

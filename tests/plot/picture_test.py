@@ -782,6 +782,20 @@ def ticks_drawn_together():
     assert len(axis.xaxis.majorTicks) == 1, f"{len(axis.xaxis.majorTicks)} ticks were made"
 
 
+def walls():
+    """A branch that comes near the wall on both sides: both walls are inside the frame."""
+    real = bifurcation.pads_of, bifurcation.reach
+    bifurcation.pads_of, bifurcation.reach = (lambda *_: ["a pad"]), (lambda *_: (25e-6, 26e-6))
+    figure, axis = our_plt.subplots()
+    axis.set_ylim(-24, 23)
+    try:
+        bifurcation.mark_walls(axis, types.SimpleNamespace(has=lambda name: name == "bearings/clearance", get=lambda *_: None, results=types.SimpleNamespace(deck={})), 0, 1e6)
+    finally:
+        bifurcation.pads_of, bifurcation.reach = real
+    low, high = axis.get_ylim()
+    assert low < -26 and high > 25, (low, high)
+
+
 def flow_lines():
     """Lines about a centre are circles, evenly spaced; of a uniform flow they are straight; no line beside nodes without a flow."""
     x, y = np.meshgrid(np.linspace(-0.5, 0.5, 60), np.linspace(-0.5, 0.5, 40))
@@ -816,6 +830,7 @@ def keys_and_files():
 
 style.use_style()
 ticks_drawn_together()
+walls()
 flow_lines()
 keys_and_files()
 beams()
