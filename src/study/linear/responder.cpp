@@ -5,12 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/growth.hpp"
-#include "whirl/core/error.hpp"
+#include "study/linear/synchronous.hpp"
 #include "whirl/film/thickness.hpp"
 #include "whirl/rotor/divide.hpp"
 #include "whirl/rotor/freedom.hpp"
@@ -56,34 +55,9 @@ Responder::Responder(const Context& context, const Layout& layout, const Unbalan
 
 ResponseAtSpeed Responder::at(double speed) {
   Vec x = walker_.at(speed);
-  PetscInt begin = 0, end = 0;
-  core::check(VecGetOwnershipRange(x, &begin, &end));
-  // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on the
-  // rotor's rows; own states of films, behind all pairs of coordinate and rate, are not forced.
-  std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
-  for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); ++row) {
-    const auto of = static_cast<std::size_t>(row), at = static_cast<std::size_t>(2 * (row - begin));
-    right[at] = speed * speed * system_.forcing_cosine()[of];
-    right[at + 1] = -speed * speed * system_.forcing_sine()[of];
-  }
-  {
-    std::optional<system::RotorSystem::WithLoss> loss;  // equilibria know of none
-    if (system_.train().rotor.loss_factor > 0) loss.emplace(system_, system_.loss_at(speed));
-    solver_.solve(x, speed, right, amplitude);
-  }
-  std::vector<double> state[2], shaft[2];
-  for (std::size_t part = 0; part < 2; ++part) {
-    core::Vector v = core::duplicate(x);
-    {
-      const core::WriteArray a(v.get());
-      for (PetscInt i = 0; i < a.size(); ++i) a[i] = amplitude[static_cast<std::size_t>(2 * i) + part];
-    }
-    state[part] = system_.gather(v.get());
-    // Not every solver tells of a singular matrix.
-    if (!std::ranges::all_of(state[part], [](double s) { return std::isfinite(s); }))
-      throw core::NotConverged(solve::singular_at_frequency);
-    shaft[part] = system_.shaft(state[part].data(), 0, false);
-  }
+  const auto state = synchronous_response(system_, solver_, x, speed);
+  std::vector<double> shaft[2];
+  for (std::size_t part = 0; part < 2; ++part) shaft[part] = system_.shaft(state[part].data(), 0, false);
   ResponseAtSpeed r;
   r.speed = speed;
   for (std::size_t k = 0; k < shaft[0].size(); ++k)

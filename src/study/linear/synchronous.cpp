@@ -1,0 +1,43 @@
+#include "study/linear/synchronous.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+
+std::array<std::vector<double>, 2> synchronous_response(system::RotorSystem& system, solve::FrequencySolver& solver,
+                                                        Vec x, double speed) {
+  PetscInt begin = 0, end = 0;
+  core::check(VecGetOwnershipRange(x, &begin, &end));
+  // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on the
+  // rotor's rows; own states of films, behind all pairs of coordinate and rate, are not forced.
+  std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
+  for (PetscInt row = begin; row < std::min(end, 2 * system.coordinates()); ++row) {
+    const auto of = static_cast<std::size_t>(row), at = static_cast<std::size_t>(2 * (row - begin));
+    right[at] = speed * speed * system.forcing_cosine()[of];
+    right[at + 1] = -speed * speed * system.forcing_sine()[of];
+  }
+  {
+    std::optional<system::RotorSystem::WithLoss> loss;  // equilibria know of none
+    if (system.train().rotor.loss_factor > 0) loss.emplace(system, system.loss_at(speed));
+    solver.solve(x, speed, right, amplitude);
+  }
+  std::array<std::vector<double>, 2> state;
+  for (std::size_t part = 0; part < 2; ++part) {
+    core::Vector v = core::duplicate(x);
+    {
+      const core::WriteArray a(v.get());
+      for (PetscInt i = 0; i < a.size(); ++i) a[i] = amplitude[static_cast<std::size_t>(2 * i) + part];
+    }
+    state[part] = system.gather(v.get());
+    // Not every solver tells of a singular matrix.
+    if (!std::ranges::all_of(state[part], [](double s) { return std::isfinite(s); }))
+      throw core::NotConverged(solve::singular_at_frequency);
+  }
+  return state;
+}
+
+}  // namespace whirl::study
