@@ -139,8 +139,9 @@ class Study:
         """A table by name; the one that the study is about if none is given."""
         known = self.tables
         chosen = name or MAIN_TABLE.get(self.kind)
-        if chosen not in known and name is None and len(known) == 1:
-            chosen = known[0]
+        own = [n for n in known if n != "unbalance"]  # which every study lists that applies one
+        if chosen not in known and name is None and len(own) == 1:
+            chosen = own[0]
         if chosen not in known:
             raise Error(f"'{self.name}' has no table '{chosen}'; it has {', '.join(known) or 'none'}")
         with damaged(self.results.path):

@@ -67,7 +67,7 @@ CAPTIONS = {
 # The same where the name ends with a place or a quantity.
 BY_PLACE = {"film-": "Film of bearing {}: pressure and thickness, unwrapped.", "coefficients-": "Coefficients of the film: {}.", "enforced-": "Coefficients by enforced motion: {}.",
             "response-": "Transfer functions to {} (amplitude and phase).", "shapes-3d-": "Mode shapes in space: {}.", "shapes-": "Mode shapes along the shaft: {}.",
-            "orbits-": "Orbits: {}.", "multipliers-": "Floquet multipliers: {}."}
+            "orbits-": "Orbits: {}.", "multipliers-": "Floquet multipliers: {}.", "columns-": "Columns of the table of the {}."}
 CONVENTIONS = [
     ("Axes", "x to the right, y up, z along the shaft; nodes are numbered from 1 along z."),
     ("Rotation", "from x to y, counter-clockwise with x to the right. Forward whirl turns with the shaft."),

@@ -14,7 +14,7 @@ from PIL import Image
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, multipliers, orbits, orders, shapes, streamlines as flow, style, sweep,  # noqa: E402
+from whirl_plot import (bearing_map, bifurcation, campbell, columns, curves, film as machine_film, locus, motion, multipliers, orbits, orders, shapes, streamlines as flow, style, sweep,  # noqa: E402
                         thd_compare, thd_cuts, thd_film, thd_maps, thd_sections)
 from whirl_plot.canvas import plt as our_plt  # noqa: E402
 from whirl_plot.ticks import together  # noqa: E402
@@ -828,6 +828,28 @@ def keys_and_files():
             assert image.mode == "RGB" and np.array_equal(np.asarray(image), pixels[..., :3])
 
 
+def tables(folder):
+    """A kind of study without pictures of its own shows the columns of its tables over the first one, a panel for each unit."""
+    z, moment, stress = [0.0, 1.0, 1.0, 2.0], [0.0, 5e3, 5e3, 0.0], [0.0, 3e6, 4e6, 0.0]
+
+    def fill(root):
+        group = synthetic.study(root, "bent", "of tomorrow").create_group("shaft")
+        group.attrs["columns"] = "z moment stress node"
+        synthetic.put(group, z=z, moment=moment, stress=stress, node=[1.0, 2.0, 2.0, 3.0])
+        for name, unit in (("z", "m"), ("moment", "N m"), ("stress", "Pa"), ("node", "1")):
+            group[name].attrs["unit"] = unit
+        other = root["studies/bent"].create_group("unbalance")
+        other.attrs["columns"] = "unbalance amount"
+        synthetic.put(other, unbalance=["a", "b", "c"], amount=[1.0, 2.0, 3.0])
+
+    with results_with(folder, fill) as results:
+        (figure,) = Figures().draw(columns, columns.draw, results["bent"]).values()
+        assert list(results["bent"].table()) == ["moment", "node", "stress", "z"], "the table that it is about"
+    assert [axis.get_ylabel() for axis in figure.axes] == ["[kN m]", "[MPa]"] and figure.axes[-1].get_xlabel() == "z [m]"
+    for axis, values in zip(figure.axes, (np.array(moment) / 1e3, np.array(stress) / 1e6)):
+        np.testing.assert_allclose(lines_of(axis, style.COLOURS[0])[0], np.stack([z, values], axis=1))
+
+
 style.use_style()
 ticks_drawn_together()
 walls()
@@ -842,7 +864,7 @@ refined()
 legends()
 border_of_stability()
 for check in (sag, mode_shapes, growth, campbell_lines, words, courses, colours, harmonics, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
-              coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines, without_meaning):
+              coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines, without_meaning, tables):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
     plt.close("all")
