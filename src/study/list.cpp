@@ -17,6 +17,7 @@
 #include "study/motion/linearity.hpp"
 #include "study/motion/motion.hpp"
 #include "study/motion/run_up.hpp"
+#include "study/stress/stress.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 
 namespace whirl::study {
@@ -47,6 +48,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<FrequencyResponse>("transfer functions from forces to motions over the frequency, at one speed"),
       kind<ReductionErrors>("what reductions of the shaft cost: eigenvalues, eigenvectors, orbits, reduced matrices"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
+      kind<Stress>("bending moments and stresses along the shaft, by what stands still and by unbalance, with margins"),
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
       kind<Motion>("a motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, what kind of motion it is"),
