@@ -127,6 +127,8 @@ def caption(what, subject=None):
     for head, told in BY_PLACE.items():
         if what.startswith(head):
             return told.format(re.sub("[-._]", " ", what.removeprefix(head)))
+    if getattr(subject, "kind", "") == "sweep":
+        return f"All variants in one picture: {re.sub('[-._]', ' ', what)}."
     return f"{kind.replace('-', ' ').capitalize()}."
 
 

@@ -67,7 +67,7 @@ def inputs(results):
         e = {**e, "stiffness": stiffness_of(e)}
         end = f"node {e['to_node']}" if e.get("to_node") else f"pedestal of {e['to_pedestal']}" if e.get("to_pedestal") else "ground"
         carries = e.get("static_load", e.get("role") in ("support", "other"))
-        rows.append([name, e.get("role", ""), e.get("node", ""), end, "yes" if carries is True or str(carries) == "true" else "no",
+        rows.append([name, e.get("role", ""), e.get("node", ""), end, "yes" if carries is True or str(carries) == "true" else "\u2013",
                      *[matrix(e, k) for k in ("stiffness", "damping", "mass")], f"{len(e['table'])} speeds" if e.get("table") else ""])
     if rows:
         head = ["element", "role", "node", "other end", "static load", "K xx xy yx yy", "C", "M", "table"]

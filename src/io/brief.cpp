@@ -66,21 +66,40 @@ std::string digits(double value, int count) {
   return text;
 }
 
+// The largest number of a column; 0: it has none.
+double largest_of(const BriefTable& table, std::size_t c) {
+  double largest = 0;
+  for (const auto& row : table.rows)
+    if (row[c].is_number() && std::isfinite(row[c].quantity.value))
+      largest = std::max(largest, std::abs(row[c].quantity.value));
+  return largest;
+}
+
+// The scale of a column: its own, or that of a column of smaller numbers with the same unit, as far as numbers of up to
+// four digits before the point come out. MN/m beside GN/m in one matrix would be misread.
+Scale scale_in(const BriefTable& table, std::size_t c) {
+  constexpr double most = 1e4;
+  const double own = largest_of(table, c);
+  Scale scale = scale_of(table.columns[c].unit, own);
+  for (std::size_t other = 0; other < table.columns.size(); ++other) {
+    const double size = largest_of(table, other);
+    if (other == c || !(size > 0) || table.columns[other].unit != table.columns[c].unit) continue;
+    const Scale finer = scale_of(table.columns[other].unit, size);
+    if (finer.factor > scale.factor && finer.factor * own < most) scale = finer;
+  }
+  return scale;
+}
+
 void typeset(BriefTable& table) {
   std::vector<std::size_t> kept;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     BriefColumn& column = table.columns[c];
-    double largest = 0;
-    bool filled = c == 0;
-    for (const auto& row : table.rows) {
-      const BriefCell& cell = row[c];
-      if (cell.is_number() && std::isfinite(cell.quantity.value))
-        largest = std::max(largest, std::abs(cell.quantity.value));
-      filled = filled || cell.is_number() || !cell.text.empty();
-    }
+    const bool filled = c == 0 || std::ranges::any_of(table.rows, [c](const auto& r) {
+                          return r[c].is_number() || !r[c].text.empty();
+                        });
     if (!filled) continue;
     kept.push_back(c);
-    const Scale scale = scale_of(column.unit, largest);
+    const Scale scale = scale_in(table, c);
     column.shown = scale.shown;
     column.factor = scale.factor;
     for (auto& row : table.rows) {
@@ -122,7 +141,9 @@ std::string reading(double value, double uncertainty) {
     return fmt::format("({})e{:+03d}", reading(value / one, uncertainty / one), power);
   }
   const int places = std::max(0, 1 - static_cast<int>(std::floor(std::log10(uncertainty))));
-  return fmt::format("{:.{}f} +- {:.{}f}", value, places, uncertainty, places);
+  std::string shown = fmt::format("{:.{}f}", value, places);
+  if (shown.find_first_not_of("-0.") == std::string::npos) shown = shown.substr(shown.starts_with('-') ? 1 : 0);
+  return fmt::format("{} +- {:.{}f}", shown, uncertainty, places);
 }
 
 std::string reading(const Quantity& q) {

@@ -60,12 +60,12 @@ std::vector<std::string> advice(const Options& rotor) {
       lines.push_back(
           fmt::format("{}: length over stiffness diameter is {:.3g}, {:.3g} in the segment before; they differ by a "
                       "factor of {:.3g}, "
-                      "advised are at most {:.0f}",
+                      "at most {:.0f} is recommended",
                       path, r, before, factor, step));
   }
   for (const Outside* all : {&above, &below})
     if (!all->segments.empty())
-      lines.push_back(fmt::format("rotor.segments.{}: length over stiffness diameter is {}, advised are {} to {}",
+      lines.push_back(fmt::format("rotor.segments.{}: length over stiffness diameter is {}, {} to {} is recommended",
                                   fmt::join(all->stretches(), ", "), all->ratios(), least, most));
   return lines;
 }

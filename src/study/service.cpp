@@ -17,6 +17,7 @@
 
 #include "service_speeds.hpp"
 #include "study/bars/unresolved.hpp"
+#include "study/linear/linear_brief.hpp"
 #include "study/linear/separation.hpp"
 
 namespace whirl::study {
@@ -58,7 +59,8 @@ std::string near_words(const std::string& verdict, const Quantity& required) {
 
 class Collector {
 public:
-  Collector(const deck::Quantity& speed, const io::Group& results) : speed_(speed.value), results_(results) {
+  Collector(const deck::Quantity& speed, const io::Group& results, bool films)
+      : speed_(speed.value), results_(results), films_(films) {
     service_.speed = {deck::from_si(speed.value, speed.unit), speed.unit};
   }
 
@@ -87,9 +89,10 @@ public:
     const auto missing = [&](const std::optional<ServiceFact>& fact, const char* what, const char* how) {
       if (!fact) service_.facts.push_back({what, {}, {}, how, {}});
     };
-    missing(film_, "thinnest film", "not known: no `static` and no `cycle_branch` gives one at this speed");
-    missing(temperature_, "highest film temperature",
-            "not known: no `thd` and no film with heat gives one at this speed");
+    if (films_) missing(film_, "thinnest film", "not known: no `static` and no `cycle_branch` gives one at this speed");
+    if (films_)
+      missing(temperature_, "highest film temperature",
+              "not known: no `thd` and no film with heat gives one at this speed");
     missing(vibration_, "largest vibration",
             "not known: no `unbalance_response`, `cycle_branch`, `motion` or `run_up` gives one at this speed");
     return std::move(service_);
@@ -242,14 +245,20 @@ private:
     for (const io::PeakEntry& p : s.peaks)
       if (p.place.starts_with("node ") && p.verdict != "damped, not critical" && std::isfinite(p.speed.value)) {
         const double factor = p.amplification_factor.value;
-        std::string more = std::isfinite(factor) ? fmt::format("amplification {:.3g}", factor) : "";
+        std::string more = std::isfinite(factor) ? "amplification " + factor_words(factor) : "";
         more = joined(more, p.verdict == words[undetermined] ? p.verdict : near_words(p.verdict, p.required_margin));
         if (std::ranges::any_of(p.notes, [](const std::string& note) { return note.starts_with("no answer"); }))
           more = joined(more, "no answer: the motion leaves a bearing too little film");
         take_critical(p.speed, more, "peak", p.place, s.name);
       }
-    const Quantity* at = find(s, "operating_speed");
-    if (!at || !is_service(deck::number_to_si(at->value, at->unit))) return;
+    // Beside a range of operating speeds, too.
+    const io::Group* group = group_of(s);
+    double speed = io::no_value;
+    if (group && group->has_attribute("operating_at"))
+      speed = group->real("operating_at");
+    else if (const Quantity* at = find(s, "operating_speed"))
+      speed = deck::number_to_si(at->value, at->unit);
+    if (!is_service(speed)) return;
     std::string mark = "linear response, 0-peak";
     const Quantity* answer = find(s, "operating_speed.answer");
     const bool touches = answer && answer->value == 0;
@@ -408,6 +417,7 @@ private:
 
   double speed_;
   const io::Group& results_;
+  bool films_;
   io::Service service_;
   std::vector<std::string> verdicts_, voters_;
   std::pair<std::string, std::string> beside_;  // verdict and voter of listed speeds on either side: for want of others
@@ -417,8 +427,9 @@ private:
 
 }  // namespace
 
-io::Service service_of(const deck::Quantity& speed, std::span<const StudySummary> studies, const io::Group& results) {
-  Collector facts(speed, results);
+io::Service service_of(const deck::Quantity& speed, std::span<const StudySummary> studies, const io::Group& results,
+                       bool films) {
+  Collector facts(speed, results, films);
   for (const StudySummary& s : studies) facts.look_at(s);
   return facts.finish();
 }

@@ -41,7 +41,8 @@ Writer::Writer(MPI_Comm comm, const Deck& deck, const RunOptions& options)
       manifest_(directory_),
       started_(std::chrono::steady_clock::now()),
       ended_(options.ended),
-      service_speed_(deck.machine.service_speed) {
+      service_speed_(deck.machine.service_speed),
+      films_(std::ranges::any_of(deck.machine.bearings, [](const auto& b) { return b.geometry.has_value(); })) {
   core::agree(comm_, [&] {
     // Every rank reads the same files, of arrays that were shared its rows. They are written together.
     if (!options.resume || !fs::exists(directory_ / "summary.json")) return;
@@ -137,7 +138,7 @@ void Writer::tell(const std::string& name) const {
 void Writer::write() {
   all_.wall_seconds =
       earlier_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-  if (service_speed_) all_.service = service_of(*service_speed_, all_.studies, studies());
+  if (service_speed_) all_.service = service_of(*service_speed_, all_.studies, studies(), films_);
   fs::path results;
   core::agree(comm_, [&] { results = file("results.h5"); });
   io::write_hdf5(results, root_, comm_);

@@ -55,6 +55,7 @@ private:
   std::vector<std::string> undelivered_;
   std::function<void(const io::StudySummary&)> ended_;
   std::optional<deck::Quantity> service_speed_;
+  bool films_;
 };
 
 }  // namespace whirl::study

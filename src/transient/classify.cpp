@@ -25,7 +25,10 @@ bool known(const Evidence& e) {
 std::string largest(const Evidence& e) {
   // Within their bars they need not be in order.
   const auto at = static_cast<std::size_t>(std::ranges::max_element(e.exponents) - e.exponents.begin());
-  return fmt::format("largest exponent {:.4g} +- {:.2g} 1/s", e.exponents[at], e.uncertainties[at]);
+  const double value = e.exponents[at], bar = e.uncertainties[at];
+  constexpr int most = 9;
+  const int places = bar > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(bar))), 0, most) : most;
+  return fmt::format("largest exponent {:.{}f} +- {:.{}f} 1/s", value, places, bar, places);
 }
 
 // A multiplier near -1 lets a motion of period one look like one of period two for long. Null if the return lasts.
@@ -173,7 +176,7 @@ Verdict classify(const Evidence& e) {
       return {MotionKind::unsettled, 0, "unsettled",
               fmt::format("at rest at an unstable equilibrium, where a disturbance grows: {}", e.grows)};
     return {MotionKind::fixed_point, 0, "fixed_point",
-            fmt::format("moves by {:.1e}{}", e.size, known(e) ? ", " + largest(e) : "")};
+            known(e) ? largest(e) : fmt::format("moves by {:.1e} in the scales of its states", e.size)};
   }
   const auto back = std::find_if(e.returns.begin(), e.returns.end(), [&](double d) { return d < e.return_tolerance; });
   const int period = back == e.returns.end() ? 0 : static_cast<int>(back - e.returns.begin()) + 1;

@@ -63,7 +63,7 @@ if not re.search(r"loses stability at the threshold 437\.\d+ rad/s \(subcritical
     failures.append("the threshold, its whirl and what it means:\n" + text)
 if text.count("above this speed the rotor jumps to large whirl;") > 0:
     failures.append("a bifurcation is explained twice:\n" + text)
-row(text, "400 left", [s["unbalanced"][f"at.400.peak_to_peak.left.{d}"] * 1e6 for d in "xy"])
+row(text, "400 rad/s, left", [s["unbalanced"][f"at.400.peak_to_peak.left.{d}"] * 1e6 for d in "xy"])
 
 response = ["studies=[{unbalance_response: {name: r, unbalance: [gen_pair], range: {from: 2400 rpm, to: 3000 rpm}, points: 25, "
             "nodes: [120, 6], operating: {from: 3000 rpm, to: 3600 rpm}}}]"]

@@ -303,7 +303,9 @@ TEST(ErrorBar, SaysWhatLeavesTheShaftOut) {
       "the mesh of the shaft (2 elements, rotor.element timoshenko) leaves up to 2.5 % in these bifurcations: cut "
       "the segments shorter");
   ASSERT_EQ(warnings(true, true).size(), 1);
-  EXPECT_EQ(warnings(true, true)[0].find("bars of the curve leave out what the 2 elements of the shaft"), 0);
+  EXPECT_EQ(
+      warnings(true, true)[0].find("the error bars of the curve leave out the error of the 2 elements of the shaft"),
+      0);
   machine.rotor.reduction.type = rotor::Reduction::Type::guyan;
   EXPECT_TRUE(warnings(false, false).empty());
   EXPECT_TRUE(warnings(false, true).empty());

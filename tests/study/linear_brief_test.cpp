@@ -253,7 +253,7 @@ TEST(FrequencyResponseBrief, NamesLargestAnswersAndLimits) {
   const io::Brief b = brief_of(study, result);
   EXPECT_EQ(b.sentences,
             (std::vector<std::string>{"undamped resonance at 70 Hz: 1 of 2 transfer functions grow without limit there",
-                                      "largest answer 2 um/N: 7 x from 7 x, at 60 Hz"}));
+                                      "largest response 2 um/N: 7 x from 7 x, at 60 Hz"}));
   ASSERT_EQ(b.tables.size(), 2);
   EXPECT_EQ(texts(b.tables[0].rows[0]), (std::vector<std::string>{"their coefficients at 50 Hz", "25", "40"}));
   EXPECT_EQ(b.tables[1].rows[1][1].text, "without limit");

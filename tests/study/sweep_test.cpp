@@ -351,11 +351,11 @@ TEST(Advice, OnlyUnusualSegments) {
   const auto lines = rotor::advice(shaft);
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_NE(lines[0].find("factor of 4.05"), std::string::npos) << lines[0];
-  EXPECT_EQ(lines[1], "rotor.segments.2: length over stiffness diameter is 0.81, advised are 0.05 to 0.8");
-  EXPECT_EQ(lines[2], "rotor.segments.5: length over stiffness diameter is 0.049, advised are 0.05 to 0.8");
+  EXPECT_EQ(lines[1], "rotor.segments.2: length over stiffness diameter is 0.81, 0.05 to 0.8 is recommended");
+  EXPECT_EQ(lines[2], "rotor.segments.5: length over stiffness diameter is 0.049, 0.05 to 0.8 is recommended");
   add(0.08, 0.1, 0.1), add(0.1, 0.1, 0.1), add(0.2, 0.1, 0.1), add(0.05, 0.1, 0.1), add(0.1, 0.1, 0.1);
   EXPECT_EQ(rotor::advice(shaft)[2],
-            "rotor.segments.2, 7 to 8, 10: length over stiffness diameter is 0.81 to 2, advised are 0.05 to 0.8");
+            "rotor.segments.2, 7 to 8, 10: length over stiffness diameter is 0.81 to 2, 0.05 to 0.8 is recommended");
 }
 
 // A study that only stands for the variants of a sweep does not run by itself, unless another one goes on from it or

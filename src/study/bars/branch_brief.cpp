@@ -35,11 +35,14 @@ io::Quantity frequency_of(const io::Bifurcation& b) {
   return {1 / (b.type == Type::flip ? 2 * b.period_s : b.period_s), "Hz"};
 }
 
-// Per speed of the shaft, where that is the parameter.
+// Per speed of the shaft, where that is the parameter; nothing of a fold of vibration at the speed itself.
 io::Quantity ratio_of(const io::Bifurcation& b) {
   const io::Quantity f = frequency_of(b);
-  if (b.parameter != "speed" || b.type != Type::hopf || !std::isfinite(f.value)) return {};
+  if (b.parameter != "speed" || (b.type != Type::hopf && b.type != Type::cyclic_fold) || !std::isfinite(f.value))
+    return {};
   const double ratio = f.value * 2 * std::numbers::pi / deck::number_to_si(b.value, b.unit);
+  if (std::abs(ratio - 1) < 1e-6) return {};
+  if (b.type == Type::cyclic_fold && !(f.bar() > 0)) return {ratio, "1"};
   return with_bar(ratio, ratio * (f.bar() / f.value + std::abs(b.uncertainty / b.value)), "1");
 }
 
@@ -280,6 +283,26 @@ io::BriefTable table_of_suspicions(const io::StudySummary& s) {
   io::BriefTable table{"Not resolved: bifurcations may lie here", {{"from", unit}, {"to", unit}, {"why"}}, {}, {}};
   for (const io::Suspicion& x : s.suspected)
     table.rows.push_back({io::Quantity{x.from, unit}, io::Quantity{x.to, unit}, x.reason});
+  return table;
+}
+
+io::BriefTable table_of_ends(const io::Group& group) {
+  if (!group.has_group("branch")) return {};
+  const io::Group& branch = group.group("branch");
+  if (!branch.has_dataset("x") || !branch.has_dataset("y")) return {};
+  const io::Dataset& x = branch.dataset("x");
+  const std::vector<double>&at = branch.reals("parameter"), &xs = branch.reals("x"), &ys = branch.reals("y");
+  const auto away = [](double v) { return v != 0; };
+  if (at.size() < 2 || x.labels.empty() || (std::ranges::none_of(xs, away) && std::ranges::none_of(ys, away)))
+    return {};
+  const std::string parameter = group.text("parameter"), unit = group.text("parameter_unit");
+  const std::vector<std::string>& names = x.labels.front();
+  io::BriefTable table{"At the ends of the branch", {{"place"}, {parameter_word(parameter), unit}}, {}, {}};
+  for (const char* axis : {"x", "y"}) table.columns.push_back({axis, x.unit});
+  for (std::size_t b = 0; b < names.size(); ++b)
+    for (const std::size_t k : {std::size_t{0}, at.size() - 1})
+      table.rows.push_back({names[b], io::Quantity{at[k], unit}, io::Quantity{xs[k * names.size() + b], x.unit},
+                            io::Quantity{ys[k * names.size() + b], x.unit}});
   return table;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 
 namespace whirl::study {
@@ -29,6 +30,10 @@ struct JoinedStretch {
 [[nodiscard]] io::BriefTable table_of_bifurcations(const io::StudySummary& s);
 /// A row for each stretch on which bifurcations may lie that could not be resolved.
 [[nodiscard]] io::BriefTable table_of_suspicions(const io::StudySummary& s);
+
+/// Where the journals, or the places that another system shows, are at both ends of a branch of equilibria; nothing if
+/// all stay at the origin.
+[[nodiscard]] io::BriefTable table_of_ends(const io::Group& group);
 
 /// Sentences on stability, threshold and end of a branch of `what` ("equilibrium", "forced vibration", "limit cycle"),
 /// and the tables of its bifurcations, its stretches and, last, what is not resolved.

@@ -31,17 +31,17 @@ bool shaft_mesh_matters(const system::Machine& machine, const LayoutOptions& lay
 namespace {
 
 void warn(io::StudySummary& summary, const rotor::Options& rotor, const std::string& bars) {
-  summary.warnings.push_back(
-      fmt::format("{} leave out what the {} elements of the shaft (rotor.element {}) are off by; `element_convergence` "
-                  "and `modes` show it",
-                  bars, rotor.segments.size(), deck::name_of(rotor.element)));
+  summary.warnings.push_back(fmt::format(
+      "{} leave out the error of the {} elements of the shaft (rotor.element {}): `element_convergence` and "
+      "`modes` show it",
+      bars, rotor.segments.size(), deck::name_of(rotor.element)));
 }
 
 }  // namespace
 
 void warn_curve_without_shaft_mesh(io::StudySummary& summary, const system::Machine& machine,
                                    const LayoutOptions& layout) {
-  if (shaft_mesh_matters(machine, layout)) warn(summary, machine.rotor, "bars of the curve");
+  if (shaft_mesh_matters(machine, layout)) warn(summary, machine.rotor, "the error bars of the curve");
 }
 
 void warn_of_shaft_mesh(io::StudySummary& summary, const system::Machine& machine, const LayoutOptions& layout) {
@@ -53,7 +53,7 @@ void warn_of_shaft_mesh(io::StudySummary& summary, const system::Machine& machin
   warn_of_shaft_mesh(summary, machine.rotor, {{"these bifurcations", most, most_of_frequency}});
   const auto lacks = [](const io::Bifurcation& b) { return !b.more.contains("uncertainty_shaft_mesh"); };
   if (std::ranges::none_of(summary.bifurcations, lacks)) return;
-  warn(summary, machine.rotor, "bars without 'uncertainty_shaft_mesh'");
+  warn(summary, machine.rotor, "some error bars");
 }
 
 void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<ShaftError>& errors,

@@ -6,6 +6,18 @@
 #include "study/brief.hpp"
 
 namespace whirl::study {
+namespace {
+
+// Ten of so many points, the last one with them.
+std::vector<std::size_t> shown_of(std::size_t count) {
+  constexpr std::size_t most = 10;
+  std::vector<std::size_t> out;
+  const std::size_t step = std::max<std::size_t>(1, (count + most - 1) / most);
+  for (std::size_t k = count > 0 ? (count - 1) % step : 0; k < count; k += step) out.push_back(k);
+  return out;
+}
+
+}  // namespace
 
 io::Brief BearingMap::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
   const Values v(result.summary);
@@ -30,16 +42,32 @@ io::Brief BearingMap::brief(const StudyResult& result, std::span<const io::Study
   }
   // Ten of the points, the last one with them.
   if (result.group.has_group("locus")) {
-    constexpr std::size_t most = 10;
     const io::Group& g = result.group.group("locus");
     const auto s = g.reals("sommerfeld"), e = g.reals("eccentricity"), a = g.reals("attitude"),
                limit = g.reals("speed_limit"), ratio = g.reals("whirl_ratio");
-    const std::size_t n = e.size(), step = std::max<std::size_t>(1, (n + most - 1) / most);
-    for (std::size_t k = (n - 1) % step; k < n; k += step)
+    for (const std::size_t k : shown_of(e.size()))
       locus.rows.push_back({io::Quantity{s[k], "1"}, io::Quantity{e[k], "1"}, io::Quantity{a[k], "rad"},
                             io::Quantity{limit[k], "1"}, io::Quantity{ratio[k], "1"}});
   }
-  brief.tables = {std::move(loads), std::move(locus)};
+  io::BriefTable coefficients{"Stiffness and damping along the locus, nondimensional",
+                              {{"|e|/c", "1"}},
+                              {},
+                              "k = c K/(load/S), b = c Omega C/(load/S); S as above"};
+  constexpr const char* pairs[] = {"xx", "xy", "yx", "yy"};
+  for (const char* letter : {"k", "b"})
+    for (const char* pair : pairs) coefficients.columns.push_back({fmt::format("{} {}", letter, pair), "1"});
+  if (result.group.has_group("locus")) {
+    const io::Group& g = result.group.group("locus");
+    const std::vector<double>& e = g.reals("eccentricity");
+    for (const std::size_t k : shown_of(e.size())) {
+      auto& row = coefficients.rows.emplace_back();
+      row.emplace_back(io::Quantity{e[k], "1"});
+      for (const char* letter : {"k", "c"})
+        for (const char* pair : pairs)
+          row.emplace_back(io::Quantity{g.reals(fmt::format("{}_{}", letter, pair))[k], "1"});
+    }
+  }
+  brief.tables = {std::move(loads), std::move(locus), std::move(coefficients)};
   return brief;
 }
 

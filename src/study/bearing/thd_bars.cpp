@@ -192,10 +192,11 @@ void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options,
   if (limitless.empty()) return;
   for (auto& [name, q] : summary.values)
     if (limitless.contains(name)) q.more.clear();
-  summary.warnings.push_back(fmt::format(
-      "no limit on ever finer meshes, and so no bar, has {}: beside orifices, which are points, they change "
-      "with the logarithm of the spacing. heat.film, temperature.mean and the percentiles have a limit",
-      fmt::join(limitless, ", ")));
+  summary.warnings.push_back(
+      fmt::format("these values have no error bar, because beside orifices, which are points, they change with the "
+                  "logarithm of the "
+                  "mesh spacing and have no limit: {}. heat.film, temperature.mean and the percentiles do converge",
+                  fmt::join(limitless, ", ")));
 }
 
 }  // namespace whirl::study

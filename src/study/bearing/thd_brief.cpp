@@ -37,6 +37,36 @@ io::BriefTable over_speed(const io::Group& budget, const std::string& unit) {
   return table;
 }
 
+// Clearance and properties of the fluid, bush and journal as warm as it.
+io::BriefTable over_temperature(const io::Group& properties) {
+  io::BriefTable table{"Clearance and fluid over the temperature",
+                       {{"temperature", "degC"},
+                        {"clearance", "m"},
+                        {"viscosity", "Pa s"},
+                        {"density", "kg/m^3"},
+                        {"conductivity", "W/(m K)"},
+                        {"heat capacity", "J/(kg K)"}},
+                       {},
+                       "bush, journal and fluid have one temperature; density at the pressure of the ambient"};
+  const std::vector<double>& temperature = properties.reals("temperature");
+  constexpr std::pair<const char*, const char*> columns[] = {{"clearance", "m"},
+                                                             {"viscosity", "Pa s"},
+                                                             {"density", "kg/m^3"},
+                                                             {"conductivity", "W/(m K)"},
+                                                             {"heat_capacity", "J/(kg K)"}};
+  for (std::size_t k = 0; k < temperature.size(); ++k) {
+    auto& row = table.rows.emplace_back();
+    row.emplace_back(in_celsius({temperature[k], "K"}));
+    for (const auto& [name, unit] : columns) row.emplace_back(io::Quantity{properties.reals(name)[k], unit});
+  }
+  return table;
+}
+
+// Of a column from the first row to the last, in percent.
+double change_of(const std::vector<std::vector<io::BriefCell>>& rows, std::size_t column) {
+  return 100 * (rows.back()[column].quantity.value / rows.front()[column].quantity.value - 1);
+}
+
 }  // namespace
 
 io::Brief ThdStudy::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
@@ -62,19 +92,26 @@ io::Brief ThdStudy::brief(const StudyResult& result, std::span<const io::StudySu
                        {"attitude", "rad"}},
                       {},
                       "load that the film carries, along x and y"};
-  film.rows.push_back(
-      {"with its heat", v["load.x"], v["load.y"], v["power_loss"], v["mass_flow"], v["eccentricity"], v["attitude"]});
+  // A component that symmetry makes zero is rounding.
+  const auto load_of = [&](const char* head, const char* axis) {
+    io::Quantity q = v[std::string(head) + axis];
+    if (std::abs(q.value) < 1e-9 * std::hypot(v[std::string(head) + "x"].value, v[std::string(head) + "y"].value))
+      q = {0, "N"};
+    return q;
+  };
+  film.rows.push_back({"with its heat", load_of("load.", "x"), load_of("load.", "y"), v["power_loss"], v["mass_flow"],
+                       v["eccentricity"], v["attitude"]});
   film.rows.push_back({"isothermal",
-                       v["load.isothermal.x"],
-                       v["load.isothermal.y"],
+                       load_of("load.isothermal.", "x"),
+                       load_of("load.isothermal.", "y"),
                        v["power_loss.isothermal"],
                        v["mass_flow.isothermal"],
                        {},
                        {}});
   if (v.get("load.lumped.x"))
     film.rows.push_back({"one temperature",
-                         v["load.lumped.x"],
-                         v["load.lumped.y"],
+                         load_of("load.lumped.", "x"),
+                         load_of("load.lumped.", "y"),
                          v["power_loss.lumped"],
                          v["mass_flow.lumped"],
                          {},
@@ -100,6 +137,15 @@ io::Brief ThdStudy::brief(const StudyResult& result, std::span<const io::StudySu
   brief.tables = {std::move(film), std::move(warm), std::move(heat)};
   if (options.speeds.size() > 1 && result.group.has_group("budget"))
     brief.tables.push_back(over_speed(result.group.group("budget"), speed.unit));
+  if (result.group.has_group("properties")) {
+    brief.tables.push_back(over_temperature(result.group.group("properties")));
+    if (const auto& rows = brief.tables.back().rows; rows.size() > 1)
+      brief.sentences.push_back(
+          fmt::format("from {} to {} the clearance changes by {:+.0f} %, the viscosity by {:+.0f} %, "
+                      "the density by {:+.0f} %",
+                      io::reading(rows.front()[0].quantity), io::reading(rows.back()[0].quantity), change_of(rows, 1),
+                      change_of(rows, 2), change_of(rows, 3)));
+  }
   return brief;
 }
 

@@ -74,13 +74,13 @@ Largest largest_of(const Travel& t, bool stable_only) {
   return out;
 }
 
-void put_largest(io::Brief& brief, const io::Group& group, const std::string& unit) {
+void put_largest(io::Brief& brief, const io::Group& group, const std::string& word, const std::string& unit) {
   const std::vector<double>& stable = group.group("branch").reals("stable");
   const bool any = std::ranges::any_of(stable, [](double s) { return s > 0; });
   const std::string length = group.group("branch").dataset("x_max").unit;
   io::BriefTable table{
       any ? "Largest vibration of the stable cycles" : "Largest vibration of the cycles, none of which is stable",
-      {{"place"}, {"x, 0-peak", length}, {"x at", unit}, {"y, 0-peak", length}, {"y at", unit}},
+      {{"place"}, {"x, 0-peak", length}, {word + " (x)", unit}, {"y, 0-peak", length}, {word + " (y)", unit}},
       {},
       "0-peak: half of the travel"};
   const std::vector<Travel> x = travels(group, 0), y = travels(group, 1);
@@ -97,8 +97,9 @@ void put_largest(io::Brief& brief, const io::Group& group, const std::string& un
       }
   }
   if (any && top.half > 0)
-    brief.sentences.push_back(fmt::format("The largest vibration of the stable cycles is {} 0-peak {}, reached at {}.",
-                                          io::reading({top.half, length}), where, io::reading({top.at, unit})));
+    brief.sentences.push_back(fmt::format(
+        "The largest vibration of the stable cycles is {} 0-peak {}, reached at {}{}.", io::reading({top.half, length}),
+        where, unit == "1" ? word + " " : "", io::reading({top.at, unit})));
   brief.tables.push_back(std::move(table));
 }
 
@@ -113,16 +114,16 @@ io::BriefTable at_asked(const io::StudySummary& s, const std::string& word, cons
       const io::Quantity x = v[head + "peak_to_peak." + p + ".x"], y = v[head + "peak_to_peak." + p + ".y"];
       if (table.columns.empty())
         table = {"Vibration asked for, peak to peak",
-                 {{word, unit},
-                  {"place"},
-                  {"x", x.unit},
-                  {"y", y.unit},
+                 {{word + ", place"},
+                  {"x, p-p", x.unit},
+                  {"y, p-p", y.unit},
                   {"thinnest film", x.unit},
                   {"largest multiplier", "1"},
                   {"period", "s"}},
                  {},
                  "multiplier: modulus of the largest Floquet multiplier; the cycle is stable below 1"};
-      table.rows.push_back({io::Quantity{std::stod(key), unit}, p, x, y, v[head + "min_thickness." + p],
+      // One name for each row: a table that is too wide for a line repeats its first column.
+      table.rows.push_back({io::reading({std::stod(key), unit}) + ", " + p, x, y, v[head + "min_thickness." + p],
                             v[head + "multiplier.modulus"], v[head + "period"]});
     }
   }
@@ -144,11 +145,12 @@ io::BriefTable safe_disturbance(const io::StudySummary& s, const io::Group& grou
   if (last < 2) return {};
   const std::vector<std::string> names = places_in(branch);
   const std::string length = branch.dataset("x_max").unit;
-  io::BriefTable table{"Safe disturbance below the threshold",
-                       {{word, unit}},
-                       {},
-                       "size of the unstable whirl, 0-peak (root of the squares of x and y): from smaller disturbances "
-                       "the rotor comes back, larger ones lead to the large whirl"};
+  io::BriefTable table{
+      "Safe disturbance below the threshold",
+      {{word, unit}},
+      {},
+      "size of the unstable whirl: sqrt(x^2 + y^2) of its 0-peak amplitudes; from smaller disturbances the "
+      "rotor comes back, larger ones lead to the large whirl"};
   for (const std::string& name : names) table.columns.push_back({name, length});
   const auto half = [&](const char* d, std::size_t k) {
     return (branch.reals(fmt::format("{}_max", d))[k] - branch.reals(fmt::format("{}_min", d))[k]) / 2;
@@ -187,7 +189,7 @@ io::Brief brief_of_cycles(const StudyResult& result, const CycleBranchOptions& o
     brief.sentences.push_back(fmt::format("The branch ends where it returns to {}.", end));
   io::BriefTable open = std::move(brief.tables.back());
   brief.tables.back() = at_asked(s, word, unit);
-  put_largest(brief, group, unit);
+  put_largest(brief, group, word, unit);
   if (self_excited) brief.tables.push_back(safe_disturbance(s, group, word, unit));
   brief.tables.push_back(std::move(open));
   return brief;

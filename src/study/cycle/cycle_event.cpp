@@ -99,13 +99,13 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
       decided(here.coefficient, doubt) || !law().estimated ? std::max(of_coefficient[0].total(), doubt) : doubt;
   if (fold && std::isfinite(here.coefficient) && here.coefficient != 0)
     put_criticality(b, here.coefficient, error, "below", "above",
-                    "second derivative of the parameter along the branch: the side on which the cycles exist");
+                    "second derivative of the parameter along the branch");
   else if (forms && found.event == solve::Event::neimark_sacker)
     put_criticality(b, here.coefficient, error, "supercritical", "subcritical",
-                    "normal form of the map over one period (Kuznetsov 2004, 5.73)");
+                    "coefficient of the map's normal form (Kuznetsov 2004, 5.73)");
   else if (forms)
     put_criticality(b, here.coefficient, error, "subcritical", "supercritical",
-                    "cubic term of the flip's normal form (Kuznetsov 2004, 5.68)");
+                    "cubic coefficient of the flip's normal form (Kuznetsov 2004, 5.68)");
 }
 
 // A fold right beside the birth of the branch may be the work of a film's kinks alone.

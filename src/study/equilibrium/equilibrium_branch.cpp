@@ -341,8 +341,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   return results.finish(branch_status(end, unit), end.points > 0);
 }
 
-io::Brief brief_of_equilibria(const io::StudySummary& s) {
+io::Brief brief_of_equilibria(const StudyResult& result) {
+  const io::StudySummary& s = result.summary;
   io::Brief brief = brief_of_branch(s, "equilibrium");
+  brief.tables.push_back(table_of_ends(result.group));
   if (const io::Quantity contact = Values(s)["contact"]; std::isfinite(contact.value))
     brief.sentences.push_back(
         fmt::format("The branch ends at {}, where a film becomes too thin.", io::reading(contact)));
@@ -360,7 +362,7 @@ public:
   [[nodiscard]] StudyResult run(Context& context) override { return follow_equilibria(context, options_, &first_); }
   [[nodiscard]] io::Brief brief(const StudyResult& result,
                                 std::span<const io::StudySummary> /*before*/) const override {
-    return brief_of_equilibria(result.summary);
+    return brief_of_equilibria(result);
   }
 
 private:
@@ -380,7 +382,7 @@ StudyResult EquilibriumBranch::run(Context& context) {
 }
 
 io::Brief EquilibriumBranch::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
-  return brief_of_equilibria(result.summary);
+  return brief_of_equilibria(result);
 }
 
 std::vector<std::unique_ptr<Study>> EquilibriumBranch::further(const io::Group& result) const {

@@ -142,11 +142,11 @@ void put_criticality(io::Bifurcation& b, double value, double uncertainty, const
   b.more["criticality_uncertainty"] = uncertainty;
   b.criticality = "undetermined";
   if (!std::isfinite(value)) {
-    b.criticality_by = by + ": it could not be had";
+    b.criticality_by = by + " could not be computed";
   } else if (!std::isfinite(uncertainty)) {
-    b.criticality_by = fmt::format("{}: {:.3g}, of unknown error", by, value);
+    b.criticality_by = fmt::format("{} is {:.3g}, without an error bar", by, value);
   } else if (!decided(value, uncertainty)) {
-    b.criticality_by = fmt::format("{}: {:.3g} +- {:.3g} may be zero", by, value, uncertainty);
+    b.criticality_by = fmt::format("{} may be zero: {}", by, io::reading(value, uncertainty));
   } else {
     b.criticality = value < 0 ? negative : positive;
     b.criticality_by = by;

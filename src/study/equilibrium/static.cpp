@@ -297,6 +297,43 @@ StudyResult Static::run(Context& context) {
   return context.results.finish("completed", true);
 }
 
+namespace {
+
+// Of films that follow the slope of the shaft the coefficients beside those of forces and displacements.
+std::vector<io::BriefTable> with_slopes(const Values& v) {
+  struct Block {
+    const char *caption, *row, *column, *unit, *rate;
+  };
+  constexpr Block blocks[] = {{"Forces by the slope of the journal", "", "slope_", "N", "N s"},
+                              {"Moments by the displacement of the journal", "slope_", "", "N", "N s"},
+                              {"Moments by the slope of the journal", "slope_", "slope_", "N m", "N m s"}};
+  constexpr const char* pairs[] = {"xx", "xy", "yx", "yy"};
+  std::vector<io::BriefTable> out;
+  for (const Block& block : blocks) {
+    io::BriefTable table{block.caption,
+                         {{"bearing"}},
+                         {},
+                         "x' = dx/dz and y' = dy/dz: slopes of the journal, and the moments that do work with them"};
+    const char *of_row = *block.row ? "'" : "", *of_column = *block.column ? "'" : "";
+    for (const char* letter : {"K", "C"})
+      for (const char* pair : pairs)
+        table.columns.push_back({fmt::format("{} {}{} {}{}", letter, pair[0], of_row, pair[1], of_column),
+                                 *letter == 'K' ? block.unit : block.rate});
+    for (const std::string& b : v.between("bearing.", ".K.x.slope_x")) {
+      auto& row = table.rows.emplace_back();
+      row.emplace_back(b);
+      for (const char* letter : {"K", "C"})
+        for (const char* pair : pairs)
+          row.emplace_back(
+              v[fmt::format("bearing.{}.{}.{}{}.{}{}", b, letter, block.row, pair[0], block.column, pair[1])]);
+    }
+    out.push_back(std::move(table));
+  }
+  return out;
+}
+
+}  // namespace
+
 io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
   const Values v(result.summary);
   io::BriefTable places{
@@ -346,7 +383,9 @@ io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySumm
     if (std::hypot(v[head + "force.x"].value, v[head + "force.y"].value) <= rounding * total) continue;
     elements.rows.push_back({e, v[head + "force.x"], v[head + "force.y"], v[head + "x"], v[head + "y"]});
   }
-  return {{extremes(v)}, {std::move(places), std::move(elements), std::move(matrices)}};
+  io::Brief brief{{extremes(v)}, {std::move(places), std::move(elements), std::move(matrices)}};
+  for (io::BriefTable& t : with_slopes(v)) brief.tables.push_back(std::move(t));
+  return brief;
 }
 
 }  // namespace whirl::study

@@ -49,7 +49,7 @@ io::Brief FrequencyResponse::brief(const StudyResult& result, std::span<const io
   const std::vector<std::string> names = v.between("", ".largest");
   if (!result.delivered || names.empty()) return {};
   const std::string at_unit = v[names.front() + ".largest_at"].unit;
-  io::BriefTable largest{"Largest answers",
+  io::BriefTable largest{"Largest responses",
                          {{"output from input"}, {"0-peak over 0-peak"}, {"at", at_unit}, {"mesh error", "%"}},
                          {},
                          "mesh error: the largest part of the amplitude, at the frequencies where it was estimated"};
@@ -75,7 +75,7 @@ io::Brief FrequencyResponse::brief(const StudyResult& result, std::span<const io
         fmt::format("undamped resonance at {}: {} of {} transfer functions grow without limit there",
                     io::reading({at, at_unit}), count, names.size()));
   for (const std::string& unit : units)
-    out.sentences.push_back(fmt::format("largest answer {}: {}, at {}",
+    out.sentences.push_back(fmt::format("largest response {}: {}, at {}",
                                         io::reading(in_micro(v[most[unit] + ".largest"])), response_words(most[unit]),
                                         io::reading(v[most[unit] + ".largest_at"])));
   io::BriefTable ways{"With films by coefficients, against the films as they are",

@@ -24,6 +24,10 @@ io::BriefCell compact_percent(const io::Quantity& q) {
   return compact(scaled(q, 100, "%"));
 }
 
+std::string factor_words(double factor) {
+  return io::reading(to_digits({factor, "1"}, 3).value);
+}
+
 std::string margin_mark(const std::string& verdict) {
   return verdict == "too near" ? "TOO NEAR" : verdict.starts_with("damped") ? "" : verdict;
 }
@@ -41,10 +45,11 @@ std::string margin_note(const Values& v) {
   return fmt::format("margin to the {}; need: by API 617 and API 684 (2005), 2.5", operating);
 }
 
-std::string in_words(const std::vector<std::string>& items, std::size_t most) {
+std::string in_words(const std::vector<std::string>& items, std::size_t most, const std::string& unit) {
   const std::size_t shown = std::min(most, items.size());
   std::string text;
   for (std::size_t k = 0; k < shown; ++k) text += (k == 0 ? "" : k + 1 == items.size() ? " and " : ", ") + items[k];
+  if (!unit.empty()) text += " " + unit;
   return shown < items.size() ? text + fmt::format(" and {} more", items.size() - shown) : text;
 }
 

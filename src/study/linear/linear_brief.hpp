@@ -17,6 +17,9 @@ namespace whirl::study {
 /// With `count` significant digits.
 [[nodiscard]] io::Quantity to_digits(io::Quantity q, int count);
 
+/// An amplification factor with three digits: "25", "1150".
+[[nodiscard]] std::string factor_words(double factor);
+
 /// What a verdict of margin_verdict() says in a row; of a damped peak nothing is asked.
 [[nodiscard]] std::string margin_mark(const std::string& verdict);
 
@@ -25,7 +28,8 @@ namespace whirl::study {
 /// What the columns of margins mean; empty if the study knows no operating speed.
 [[nodiscard]] std::string margin_note(const Values& v);
 
-/// "a", "a and b", "a, b and c", "a, b and 4 more".
-[[nodiscard]] std::string in_words(const std::vector<std::string>& items, std::size_t most = 6);
+/// "a", "a and b", "a, b and c", "a, b and 4 more"; with a unit "a and b rpm", "a, b rpm and 4 more".
+[[nodiscard]] std::string in_words(const std::vector<std::string>& items, std::size_t most = 6,
+                                   const std::string& unit = "");
 
 }  // namespace whirl::study

@@ -78,11 +78,10 @@ void ModeTables::warn(io::StudySummary& summary, const std::map<double, ModeSear
   if (rest != searches.rend()) {
     summary.set("rest.multiplicity", rest->second.rest_multiplicity, "1");
     summary.set("rest.vectors", rest->second.rest_vectors, "1");
-    summary.warnings.push_back(
-        fmt::format("at {:.6g} rad/s the eigenvalue zero has multiplicity {:.0f} but {:.0f} vectors: the machine is "
-                    "defective, as a "
-                    "free shaft is, and no sum of modes describes its motions",
-                    rest->first, rest->second.rest_multiplicity, rest->second.rest_vectors));
+    summary.warnings.push_back(fmt::format(
+        "at {:.6g} rad/s the eigenvalue zero has multiplicity {:.0f} but {:.0f} eigenvectors, as of a shaft "
+        "that drifts freely: no sum of modes describes how it drifts and tilts",
+        rest->first, rest->second.rest_multiplicity, rest->second.rest_vectors));
   }
   if (std::any_of(numbers_.begin(), numbers_.end(), [](double c) { return std::isnan(c); }))
     summary.warnings.push_back(

@@ -175,15 +175,21 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
     begins.push_back(r.begins);
     ends.push_back(r.ends);
     whirl.emplace_back(spectral::vibrates(r.lambda) ? spectral::name_of(tables_.sense_of(r.fastest)) : "none");
-    words.push_back(fmt::format("{}{} to {}{} {}: {}",
+    // With as many digits as the bar of the border has.
+    const auto place_of = [&](double speed, const std::optional<std::size_t>& crossing) {
+      const auto bar = error_of(crossing);
+      const auto error = bar.find("uncertainty");
+      return error == bar.end() ? number_text(speed, unit_) : io::reading(deck::from_si(speed, unit_), error->second);
+    };
+    words.push_back(fmt::format("from {}{} to {}{} {}: {}",
                                 r.begins       ? ""
-                                : r.from_start ? "from the start, "
-                                               : "first seen growing at ",
-                                number_text(r.from, unit_), number_text(r.to, unit_),
+                                : r.from_start ? "the start of the range, "
+                                               : "the first speed computed at which it grows, ",
+                                place_of(r.from, r.begin_crossing),
                                 r.ends     ? ""
-                                : r.to_end ? " (the end)"
-                                           : " (last seen growing there)",
-                                unit_, words_of(r.fastest, r.lambda)));
+                                : r.to_end ? "the end of the range, "
+                                           : "the last speed computed at which it grows, ",
+                                place_of(r.to, r.end_crossing), unit_, words_of(r.fastest, r.lambda)));
     if (++shown > most_named) continue;
     const std::string head = fmt::format("unstable.{}.", shown);
     summary.set(head + "from", deck::from_si(r.from, unit_), unit_, error_of(r.begin_crossing));

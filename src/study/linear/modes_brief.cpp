@@ -105,10 +105,10 @@ std::vector<std::string> of_criticals(const std::vector<CriticalSpeed>& all, con
       known.push_back(at);
     if (c.verdict == "too near" && c.stability != "unstable") near.push_back(at);
   }
-  const std::string unit = all.empty() ? "" : " " + all.front().speed.unit;
+  const std::string unit = all.empty() ? "" : all.front().speed.unit;
   const auto say = [&](const std::vector<std::string>& speeds, const char* one, const char* several) {
     if (!speeds.empty())
-      out.push_back(fmt::format("{}: {}{}", speeds.size() == 1 ? one : several, in_words(speeds), unit));
+      out.push_back(fmt::format("{}: {}", speeds.size() == 1 ? one : several, in_words(speeds, 6, unit)));
   };
   say(known, "critical speed with an amplification above 2.5", "critical speeds with an amplification above 2.5");
   if (known.empty())
@@ -224,12 +224,17 @@ io::BriefTable last_modes(const io::StudySummary& s, const Values& v) {
   std::vector<io::ModeEntry> last;
   for (const io::ModeEntry& m : s.modes)
     if (m.speed == s.modes.back().speed) last.push_back(m);
-  io::BriefTable table{
-      fmt::format("Modes at {}", io::reading({last.front().speed, last.front().speed_unit})),
-      {{"mode"}, {"frequency", "Hz"}, {"log dec.", "1"}, {"damping ratio", "1"}, {"whirl"}, {"verdict"}},
-      {},
-      {}};
-  bool either = false;
+  io::BriefTable table{fmt::format("Modes at {}", io::reading({last.front().speed, last.front().speed_unit})),
+                       {{"mode"},
+                        {"frequency", "Hz"},
+                        {"log dec.", "1"},
+                        {"damping ratio", "1"},
+                        {"whirl"},
+                        {"condition", "1"},
+                        {"verdict"}},
+                       {},
+                       {}};
+  bool either = false, conditioned = false;
   for (std::size_t k = 0; k < last.size(); ++k) {
     const io::ModeEntry& m = last[k];
     const bool moves = m.imag > 0;
@@ -243,12 +248,20 @@ io::BriefTable last_modes(const io::StudySummary& s, const Values& v) {
     const auto ratio = extra(m, "damping_ratio");
     row.push_back(ratio ? to_digits({*ratio, "1"}, 4) : io::Quantity{});
     row.emplace_back(moves ? m.whirl : "");
+    const auto condition = extra(m, "condition");
+    conditioned = conditioned || condition;
+    row.push_back(condition ? io::BriefCell(to_digits({*condition, "1"}, 3)) : io::BriefCell());
     row.emplace_back(m.stability == "stable"     ? ""
                      : m.stability == "unstable" ? "UNSTABLE"
                      : moves                     ? m.stability
                                                  : fmt::format("diverges, s = +{:.4g} 1/s", m.real));
   }
   std::vector<std::string> notes;
+  if (conditioned) notes.emplace_back("condition: 1 is best; it multiplies relative errors of the matrices");
+  if (const auto error = v.get("reduction.largest_error"); error && *error > 0)
+    notes.push_back(
+        fmt::format("the bars leave out the reduction of the shaft, which changes these eigenvalues by up to {}",
+                    io::reading(to_digits(in_hertz({*error, "rad/s"}), 2))));
   if (either) notes.emplace_back("either: equal modes, any combination of which is a mode");
   if (const auto count = std::ranges::count(last, not_resolved, &io::ModeEntry::stability); count > 0)
     notes.push_back(
@@ -293,7 +306,7 @@ io::Brief Modes::brief(const StudyResult& result, std::span<const io::StudySumma
     else if (growing.size() == speeds.size())
       out.sentences.push_back(fmt::format("unstable at all {} speeds", speeds.size()));
     else if (!growing.empty())
-      out.sentences.push_back(fmt::format("unstable at {} {}", in_words(growing), s.modes.front().speed_unit));
+      out.sentences.push_back("unstable at " + in_words(growing, 6, s.modes.front().speed_unit));
     else
       out.sentences.push_back(fmt::format("no mode found grows for sure at any of the {} speeds", speeds.size()));
     if (speeds.size() > few) out.sentences.push_back(of_undamped(s));

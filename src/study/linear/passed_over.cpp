@@ -28,17 +28,20 @@ void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>
       const double ratio = here / std::max(beside, there.rounding[e]);
       if (!(ratio > most)) continue;
       most = ratio;
-      words = fmt::format("{:.6g} {} ({} reaches {:.3g} {} at it, {:.3g} {} at the frequencies beside)",
-                          deck::from_si(resonances[k].speed, unit, deck::frequency), unit, names[e].name, here,
-                          names[e].unit, beside, names[e].unit);
+      std::string name = names[e].name;
+      std::ranges::replace_if(
+          name, [](char c) { return c == '.' || c == '_'; }, ' ');
+      words = fmt::format("{:.6g} {} ({} reaches {:.3g} {} there, {:.3g} {} at the frequencies beside it)",
+                          deck::from_si(resonances[k].speed, unit, deck::frequency), unit, name, here, names[e].unit,
+                          beside, names[e].unit);
     }
     if (!words.empty()) all.push_back(words);
   }
   if (all.empty()) return;
   const std::size_t n = std::min(shown, all.size());
   summary.warnings.push_back(fmt::format(
-      "the frequencies pass over resonances narrower than their distance: {}{}. The largest answers are those "
-      "computed: more points, or a range about a resonance, show it",
+      "the frequencies step over narrow resonances: {}{}. The largest responses are those at the frequencies computed: "
+      "more points, or a range about a resonance, show its peak",
       fmt::join(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), ", "),
       all.size() > n ? fmt::format(", and {} more", all.size() - n) : ""));
 }

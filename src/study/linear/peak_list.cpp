@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/linear/linear_brief.hpp"
+
 namespace whirl::study {
 
 std::optional<deck::Range> operating_range(const std::optional<deck::Range>& range,
@@ -82,7 +84,7 @@ void warn_of_amplification(io::StudySummary& summary) {
     // A peak too narrow for a factor says so itself.
     if (!std::isfinite(factor.value) || !(factor.value - factor.bar() > high_amplification)) return;
     const High here{factor.value, speed.value,
-                    fmt::format("{:.3g} at {:.5g} {}{}", factor.value, speed.value, speed.unit, where)};
+                    fmt::format("{} at {:.5g} {}{}", factor_words(factor.value), speed.value, speed.unit, where)};
     const auto known = std::ranges::find_if(
         high, [&](const High& h) { return std::abs(h.speed - here.speed) < near * std::abs(here.speed); });
     if (known == high.end())

@@ -118,11 +118,14 @@ void put_films(io::Group& group, io::StudySummary& summary, const system::ShownP
     if (!worst) continue;
     summary.set("bearing." + places.names[b] + ".film_min", worst->films[b], "m");
     if (first)
-      summary.warnings.push_back(fmt::format(
-          "the linear motion leaves bearing {} {:.3g} um of film at {:.6g} {}, less than the {:.3g} um below which the "
-          "surfaces touch (minimum_film): no answer between {:.6g} and {:.6g} {}",
-          places.names[b], worst->films[b] * 1e6, deck::from_si(worst->speed, unit), unit, places.least_films[b] * 1e6,
-          deck::from_si(first->speed, unit), deck::from_si(last->speed, unit), unit));
+      summary.warnings.push_back(
+          fmt::format("the linear motion {} bearing {} at {:.6g} {}, where surfaces touch below {:.3g} um "
+                      "(minimum_film): no answer "
+                      "between {:.6g} and {:.6g} {}",
+                      worst->films[b] < 0 ? fmt::format("is {:.3g} um larger than the film of", -worst->films[b] * 1e6)
+                                          : fmt::format("leaves {:.3g} um of film in", worst->films[b] * 1e6),
+                      places.names[b], deck::from_si(worst->speed, unit), unit, places.least_films[b] * 1e6,
+                      deck::from_si(first->speed, unit), deck::from_si(last->speed, unit), unit));
   }
 }
 

@@ -208,7 +208,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
       if (!here.values.empty()) spectra[speeds[i]] = std::move(here.values);
     }
   };
-  // Equilibria know of no loss factor: of shafts with one stability is not asked.
+  // Eigenvalues are counted without a loss factor, so that nothing is said of a shaft with one.
   const bool lossless = context.machine.rotor.loss_factor == 0;
   // A resonance takes about four spectra. Small dense matrices have cheap ones: enough for 75 resonances. A spectrum of
   // a larger machine costs as much as many responses: enough for six.
@@ -392,6 +392,11 @@ StudyResult UnbalanceResponse::run(Context& context) {
   auto& group = results.group();
   put_films(group, summary, shown, curve, unit);
   put_stability(group, summary, curve, stable, operating_speed, unit);
+  if (!lossless)
+    summary.warnings.emplace_back(
+        "this study does not tell where a shaft with a loss factor is unstable: `modes` over the speed does. Where "
+        "modes "
+        "grow, no vibration settles into this response");
   // Nothing grows, and something does not decay.
   if (constexpr std::string_view word = "stable";
       std::ranges::find(summary.peaks, undamped, &io::PeakEntry::stability) != summary.peaks.end() &&
@@ -409,6 +414,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   put_motion(group.child("bearings"), curve, &ResponseAtSpeed::bearings, "journal relative to its pedestal");
   group.child("bearings").label_each({names_of_bearings(context.machine)});
   group.set("speed_unit", unit);
+  if (operating_known) group.set("operating_at", operating_speed->value);
   group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
   return results.finish(status_of(lost.size(), grid.size(), "speeds", "response"), true);
 }

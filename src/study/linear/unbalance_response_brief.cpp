@@ -116,17 +116,24 @@ std::vector<std::string> of_peaks(const std::vector<io::PeakEntry>& peaks, const
     const io::PeakEntry& p = *std::ranges::max_element(found, {}, [](const auto& f) { return f.semi_major.value; });
     const io::Quantity& factor = p.amplification_factor;
     out.push_back(fmt::format("largest peak {} at {}, {}{}", io::reading(p.semi_major), p.place, io::reading(p.speed),
-                              std::isfinite(factor.value) ? fmt::format(", amplification {:.3g}", factor.value) : ""));
+                              std::isfinite(factor.value) ? ", amplification " + factor_words(factor.value) : ""));
   } else if (endless == known.end())
     out.push_back(fmt::format("{} peak{}, none of which is known to be a motion of the machine", known.size(),
                               known.size() > 1 ? "s" : ""));
-  std::vector<std::string> near;  // one resonance shows at many places
+  // One resonance shows at many places, at speeds that differ a little.
+  constexpr double same = 0.02;
+  std::vector<double> speeds;
   for (const io::PeakEntry& p : peaks)
-    if (const std::string at = fmt::format("{:.4g}", p.speed.value);
-        p.verdict == "too near" && is_answer(p) && std::ranges::find(near, at) == near.end())
-      near.push_back(at);
-  if (!near.empty())
-    out.push_back(fmt::format("too near the operating speed: {} {}", in_words(near), peaks.front().speed.unit));
+    if (p.verdict == "too near" && is_answer(p)) speeds.push_back(p.speed.value);
+  std::ranges::sort(speeds);
+  std::vector<std::string> near;
+  for (std::size_t k = 0, first = 0; k < speeds.size(); ++k)
+    if (k + 1 == speeds.size() || speeds[k + 1] > (1 + same) * speeds[k]) {
+      const std::string low = fmt::format("{:.4g}", speeds[first]), high = fmt::format("{:.4g}", speeds[k]);
+      near.push_back(low == high ? low : low + " to " + high);
+      first = k + 1;
+    }
+  if (!near.empty()) out.push_back("too near the operating speed: " + in_words(near, 6, peaks.front().speed.unit));
   return out;
 }
 

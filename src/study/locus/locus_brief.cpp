@@ -20,8 +20,8 @@ constexpr std::array<LocusWord, 5> words_of_curves{{{"fold", "limit points (fold
                                                     {"flip", "flips (period doublings)"},
                                                     {"neimark_sacker", "Neimark-Sacker points"}}};
 constexpr std::array<LocusWord, 13> words_of_points{
-    {{"meeting", "two of them meet: the curve turns over the second parameter"},
-     {"meeting_over_second", "the curve turns over the first parameter"},
+    {{"meeting", "two of them meet: the curve turns in {1}"},
+     {"meeting_over_second", "the curve turns in {0}"},
      {"resonance_1_1", "resonance 1:1"},
      {"resonance_1_2", "resonance 1:2"},
      {"resonance_1_3", "resonance 1:3"},
@@ -78,7 +78,7 @@ io::Brief Locus::brief(const StudyResult& result, std::span<const io::StudySumma
     brief.sentences.push_back(fmt::format("Where it was begun, the motion is stable on the side of the {} {}.",
                                           group.text("stable_side") == "below" ? "lower" : "higher", one));
   io::BriefTable table{"Ends and extremes of the curve",
-                       {{"where"}, {one, first->unit}, {two, over->unit}, {"others"}},
+                       {{"where"}, {one, first->unit}, {two, over->unit}, {"beside"}},
                        {},
                        "bar: of one parameter with the other one fixed, from other meshes"};
   const auto row = [](const auto& values, const auto& at) { return static_cast<std::size_t>(at - values.begin()); };
@@ -98,15 +98,15 @@ io::Brief Locus::brief(const StudyResult& result, std::span<const io::StudySumma
   add(first->values.size() - 1, "other end");
   for (const auto& [k, where] : shown)
     table.rows.push_back({where, curve.at("parameter", k), curve.at("second", k),
-                          others && others->values[k] > 0 ? "unstable already" : ""});
+                          others && others->values[k] > 0 ? "something else is unstable" : ""});
   io::BriefTable special{
-      "Points of codimension two", {{"what"}, {one, first->unit}, {two, over->unit}, {"curve"}}, {}, {}};
+      "Special points of the curve", {{"what"}, {one, first->unit}, {two, over->unit}, {"curve"}}, {}, {}};
   for (const io::CodimensionTwo& c : result.summary.codimension_two) {
     io::Quantity here = c.value, there = c.second_value;
     if (const auto bar = c.more.find("value_uncertainty"); bar != c.more.end()) here.more["uncertainty"] = bar->second;
     if (std::isfinite(c.uncertainty)) there.more["uncertainty"] = c.uncertainty;
-    special.rows.push_back(
-        {in_words_of(words_of_points, c.type), here, there, c.more.contains("end_of_curve") ? "ends here" : ""});
+    special.rows.push_back({fmt::format(fmt::runtime(in_words_of(words_of_points, c.type)), one, two), here, there,
+                            c.more.contains("end_of_curve") ? "ends here" : ""});
   }
   brief.tables = {std::move(special), std::move(table), table_of_suspicions(result.summary)};
   return brief;

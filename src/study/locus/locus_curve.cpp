@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "study/bars/beyond.hpp"
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/locus/locus_follower.hpp"
 #include "whirl/deck/units.hpp"
+#include "whirl/io/brief.hpp"
 #include "whirl/io/table.hpp"
 
 namespace whirl::study {
@@ -51,9 +53,10 @@ void LocusFollower::put_curve(const std::vector<Row>& rows, const std::vector<Ro
   auto& summary = context_.results.summary();
   if (marked > 0)
     summary.warnings.push_back(fmt::format(
-        "no border of stability at {} of {} points, second parameter from {:.6g} to {:.6g} {}: others are unstable "
-        "there already (others_unstable)",
-        marked, rows.size(), low, high, second));
+        "at {} of {} points, {} from {} to {} {}, the curve is no border of stability: something else is unstable "
+        "there "
+        "already",
+        marked, rows.size(), parameter_word(options_.second.path), io::reading(low), io::reading(high), second));
   waves.warn(summary, second);
   warn_curve_without_shaft_mesh(summary, context_.machine, context_.layout);
   for (const io::Table::Column& column : table.columns())

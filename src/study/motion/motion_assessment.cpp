@@ -36,7 +36,9 @@ void MotionRecord::write_section(io::Group& group, io::StudySummary& summary, co
   if (section_text_.empty()) return;
   section_.write(group, places_, section_text_);
   summary.set("section.points", static_cast<double>(section_.count()), "1");
-  if (const auto e = evidence(); section_.count() == 0 && e.size >= e.rest)
+  // What is at rest crosses none.
+  if (const auto e = evidence();
+      section_.count() == 0 && e.size >= e.rest && verdict.kind != transient::MotionKind::fixed_point)
     summary.warnings.push_back(fmt::format("the motion never crosses its section {}", section_text_));
   if (section_.count() > 1) summary.set("section.interval", section_.interval(1)[0], "s");
   if (verdict.kind != transient::MotionKind::limit_cycle || verdict.period == 0) return;

@@ -54,9 +54,11 @@ std::string in_short(std::string value) {
                                      {"semi major", "0-peak"},
                                      {"peak to peak", "p-p"},
                                      {"first forward", "forward"},
+                                     {"min thickness", "thinnest film"},
                                      {"log decrement", "log dec."}})
     if (const std::size_t at = value.find(words); at != std::string::npos)
       value.replace(at, std::string_view(words).size(), brief);
+  if (value.starts_with("bearing ")) value.erase(0, std::string_view("bearing ").size());
   return value;
 }
 
@@ -125,7 +127,9 @@ private:
   [[nodiscard]] Shown shown_of(const io::SweepColumn& column) const {
     Shown c{&column, study_of(column.name), {}, {}, {}, {}};
     c.value = column.name.substr(std::min(column.name.size(), c.study.size() + 1));
-    c.head = in_short(c.value);
+    // Of modes at one speed, which is that of every row.
+    static const std::regex at_speed(R"(^at\.[0-9.e+-]+\.(?=first_forward\.))");
+    c.head = in_short(speeds_of(c.study) > 1 ? c.value : std::regex_replace(c.value, at_speed, ""));
     c.name = studies_.size() > 1 ? c.study + ": " + c.head : c.head;
     choose_unit(c);
     return c;
@@ -144,6 +148,13 @@ private:
       if (same) return true;
     }
     return false;
+  }
+
+  // At how many speeds of its list a study has the first forward mode.
+  [[nodiscard]] std::ptrdiff_t speeds_of(const std::string& study) const {
+    return std::ranges::count_if(s_.columns, [&](const io::SweepColumn& c) {
+      return c.name.starts_with(study + ".at.") && c.name.ends_with(".first_forward.frequency");
+    });
   }
 
   void choose() {
@@ -248,7 +259,9 @@ private:
         told.push_back(names_[i] + ": " + verdicts_[i].words);
     }
     std::string text;
-    if (marked) text = "About an unstable equilibrium peaks, margins and factors describe no real motion";
+    const bool peaks =
+        std::ranges::any_of(chosen_, [](const Shown& c) { return c.value.find("peak.") != std::string::npos; });
+    if (marked && peaks) text = "About an unstable equilibrium peaks, margins and factors describe no real motion";
     for (std::size_t k = 0; k < std::min(most_told, told.size()); ++k) text += (text.empty() ? "" : "; ") + told[k];
     if (told.size() > most_told) text += fmt::format("; and {} more", told.size() - most_told);
     if (left_out_ > 0)
@@ -256,9 +269,9 @@ private:
     return text;
   }
 
-  // What the study itself says of a row, else what the others say.
+  // What the study itself says of a row. A single study that says nothing has the word of the row.
   [[nodiscard]] std::string verdict(std::size_t row, const std::string& study) const {
-    StabilityWord found = verdicts_[row].found;
+    StabilityWord found = studies_.size() > 1 ? StabilityWord::nothing : verdicts_[row].found;
     const auto at = std::ranges::find(rows_[row], study, &io::StudySummary::name);
     if (at != rows_[row].end())
       if (const StabilityWord own = verdict_of(*at).found; own != StabilityWord::nothing) found = own;
@@ -291,11 +304,12 @@ private:
   }
 
   [[nodiscard]] io::BriefTable trends() const {
-    io::BriefTable t{"Trends",
-                     {{"value"}, {"over"}, {"from"}, {"to"}, {"course"}, {"in all"}},
-                     {},
-                     "from the first place to the last; a course counts where no bar of a difference between "
-                     "neighbours contains zero"};
+    io::BriefTable t{
+        "Trends",
+        {{"value"}, {"over"}, {"from"}, {"to"}, {"course"}, {"change"}},
+        {},
+        "change: from the first variant to the last; it rises or falls where no bar of a difference between "
+        "neighbours contains zero"};
     for (const io::Trend& trend : s_.trends) {
       const Shown* c = shown(trend.column);
       if (!c || trend.difference.empty()) continue;
@@ -322,6 +336,11 @@ private:
     if (names_.size() > most_rows) return out;
     for (const std::string& study : studies_) {
       io::BriefTable t{fmt::format("{}: frequencies of the modes", study), {{"place"}}, {}, "by rising frequency"};
+      const auto reduced = [](const io::StudySummary& s) {
+        return std::ranges::any_of(s.values, [](const auto& v) { return v.first == "reduction.largest_error"; });
+      };
+      if (std::ranges::any_of(rows_, [&](const auto& row) { return std::ranges::any_of(row, reduced); }))
+        t.note += "; the bars leave out the reduction of the shaft";
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         t.columns.push_back({names_[i], "Hz"});
         const auto at = std::ranges::find(rows_[i], study, &io::StudySummary::name);
