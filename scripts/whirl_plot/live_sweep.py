@@ -42,7 +42,7 @@ def trends(study):
             colour = COLOURS[k % len(COLOURS)]
             ends = [np.ravel([(p, p, np.nan) for p in place]), np.ravel([(v - b, v + b, np.nan) for v, b in zip(value, bar)])]
             lines += [line(*ends, None, number, colour=colour, quiet=True, w=1), line(place, value, None, number, colour=colour, quiet=True, w=1.2)]
-            lines.append(line(place, value, None, number, colour=colour, dots=True, t=[f"{v}: {with_bar(float(y), float(b) or None)} {unit}" for _, y, b, v in course]))
+            lines.append(line(place, value, None, number, colour=colour, dots=True, t=[f"{sweeps.short(v)}: {with_bar(float(y), float(b) or None)} {unit}" for _, y, b, v in course]))
         panels.append({"x": parted(sweeps.axis_of(study)[0]), "y": parted(sweeps.label_of(study, head, unit)), "title": f"{head}: {MARKS[kind][2]}", "logx": bool(sweeps.wide([row[0] for course in courses for row in course]))})
     return {"panels": panels, "lines": lines} if panels else None
 
@@ -67,7 +67,7 @@ def branches(study, what):
                     curves = [branch.column(c)[:, option] for c in columns]
                     scale = sweeps.scale_of_journal(subject, option)
                     for values in curves:
-                        lines += curve(branch, values, variant, option, colour, scale)
+                        lines += curve(branch, values, sweeps.short(variant), option, colour, scale)
                     lines += marks(branch, curves, option, scale)
             places = first.bearings(branch.column(columns[0]).shape[1])
             panel = {"x": axis_of(first), "y": ("y / c" if relative else "y", "" if relative else "m"), "height": 420}
@@ -88,7 +88,7 @@ def responses(study, what):
             steady = "".join(styles() if s else styles(dash=1, words="unstable: no vibration settles") for s in validity.stable)
             for panel, direction in enumerate("xy"):
                 for option, values in enumerate(subject.get(f"bearings/{direction}_amplitude").reshape(len(speed), -1).T):
-                    lines.append(line(speed, np.where(validity.answer, values * scale, np.nan), variant, panel, option, hexadecimal(colour), s=steady))
+                    lines.append(line(speed, np.where(validity.answer, values * scale, np.nan), sweeps.short(variant), panel, option, hexadecimal(colour), s=steady))
         shared = {"x": ("speed", unit), "by": "x", "low": 0, "span": rounded(speed[[0, -1]]), "places": service_place(first, unit)}
         panels = [{**shared, "y": (f"{direction}, amplitude, 0-peak", length)} for direction in "xy"]
         return {"panels": panels, "lines": lines, "styles": styles.table, "choose": {"name": "at", "of": first.bearings(option + 1)}}

@@ -76,10 +76,16 @@ def words_of(subject):
     return subject.name + (f", unbalance {unbalance}" if unbalance else "")
 
 
+def short(variant):
+    """A name with numbers of six digits: variants of a range are called `speed 106.12244898 rad/s`."""
+    words = re.sub(r"\d+\.\d{4,}", lambda number: f"{float(number[0]):.6g}", variant)
+    return re.sub(r"(?<=\d) um\b", " \u00b5m", words)
+
+
 def legend(rows, most=16):
     """Of many variants some, evenly: their colours are those of a scale."""
     shown = rows if len(rows) <= most else [rows[k] for k in np.linspace(0, len(rows) - 1, most).round().astype(int)]
-    return [Line2D([], [], color=c, label=v) for v, c, _ in shown]
+    return [Line2D([], [], color=c, label=short(v)) for v, c, _ in shown]
 
 
 def plain(text):

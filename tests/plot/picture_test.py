@@ -723,6 +723,13 @@ def same_bifurcations():
     assert sweep.pairs_of([event(1, "below")], [event(2, "below")]) == [(0, 0)] and not sweep.pairs_of([event(1, "below")], [event(2, "below", 3.0)])
 
 
+def names_of_variants():
+    """Numbers of six digits, and a legend that names at most sixteen variants of a scale, the first and the last among them."""
+    assert sweep.short("speed 106.12244898 rad/s") == "speed 106.122 rad/s" and sweep.short("clearance 80 um, x 1.5") == "clearance 80 \u00b5m, x 1.5"
+    labels = [h.get_label() for h in sweep.legend([(f"speed {k}", "#123456", {}) for k in range(50)])]
+    assert len(labels) == 16 and labels[0] == "speed 0" and labels[-1] == "speed 49", labels
+
+
 def without_meaning(folder):
     """No picture of a straight line, of a path that stays where it is, or of a motion that was drawn before."""
     def fill(root):
@@ -860,6 +867,7 @@ turning_branches()
 sharp_points()
 courses_of_multipliers()
 same_bifurcations()
+names_of_variants()
 refined()
 legends()
 border_of_stability()
