@@ -29,7 +29,8 @@ class Followed:
         undamped = np.zeros(len(self.parameter)) if undamped is None else np.asarray(undamped)
         self.solid = {(True,): "undamped", (False,): "stable"}.get(tuple(np.unique(undamped[self.stable] > 0)), "stable or undamped")
         unstable, step = unstable if unstable is not None else (~self.stable).astype(int), study.get("branch/step")
-        self.bare = self.curve = Branch(self.parameter, step, unstable)
+        filled = 0 < float(study.attribute("picture_tolerance", 0)) <= 0.02
+        self.bare = self.curve = Branch(self.parameter, step, unstable, filled)
         self.bare_parameter, self.bare_stable = self.parameter, self.stable
         self.born, self.closed = (study.has(f"{end}/parameter") and self.points > 0 for end in ("birth", "closing"))
         step = np.abs(np.diff(self.parameter, prepend=self.parameter[0])) if step is None else step
@@ -42,7 +43,7 @@ class Followed:
             self.stable = np.concatenate([self.stable, self.stable[-1:]])
             step, unstable = np.concatenate([step, [abs(self.parameter[-1] - self.parameter[-2])]]), np.concatenate([unstable, unstable[-1:]])
         if self.born or self.closed:
-            self.curve = Branch(self.parameter, step, unstable)
+            self.curve = Branch(self.parameter, step, unstable, filled)
         kinds = study.get("bifurcations/type")
         values = [] if kinds is None or not len(kinds) else np.atleast_1d(study.get("bifurcations/parameter"))
         self.changes, known = self._changes()

@@ -79,7 +79,8 @@ def along_shaft(z, values, slope=None, shown=240):
 class Branch:
     """A branch through its points, cubic along the arclength: parameter and any number of curves over it."""
 
-    def __init__(self, parameter, step=None, unstable=None):
+    def __init__(self, parameter, step=None, unstable=None, filled=False):
+        self.filled = filled
         self.parameter = np.asarray(parameter, float)
         n = len(self.parameter)
         self.unstable = np.zeros(n, int) if unstable is None else np.asarray(unstable, int)
@@ -103,8 +104,10 @@ class Branch:
 
     def straight(self, values):
         """Segments in which too few points were computed for a curve: on both sides of a point at which the picture turns sharply between
-        points that are far apart."""
+        points that are far apart. Of branches that were filled where they bend there are none: as lines they are right to a percent."""
         values, n = np.asarray(values, float), len(self.parameter)
+        if self.filled and n > 2:
+            return np.zeros(n - 1, bool)
         if n < 3:
             return np.ones(max(0, n - 1), bool)
         size = np.array([np.ptp(self.parameter) or 1, max(np.ptp(values), 0.02 * np.abs(values).max()) or 1])
@@ -139,7 +142,7 @@ class Branch:
             s, parameter = np.insert(s, k, at), np.insert(parameter, k, self.at(self.parameter, (i, t)))
             unstable, values = np.insert(unstable, k, min(self.unstable[i], self.unstable[i + 1])), np.insert(values, k, value)
             new.append(k)
-        return Branch(parameter, np.diff(s, prepend=s[0]), unstable), values, new
+        return Branch(parameter, np.diff(s, prepend=s[0]), unstable, self.filled), values, new
 
     def at(self, values, place):
         """A curve at a place (segment, t in [0, 1]) on the branch."""

@@ -67,6 +67,11 @@ void write_memory(io::Group& group, const solve::BranchMemory& memory, bool shar
   group.put("folds", std::move(folds), "1", "folds of the last step, and how far it reaches from there");
   put_events(group, "met", memory.met);
   group.put("warm", memory.warm, "1", "what helps with the next solution");
+  group.set("born", memory.born ? 1 : 0);
+  std::vector<double> ranges;
+  for (const auto& [low, high] : memory.ranges) ranges.insert(ranges.end(), {low, high});
+  group.put("ranges", std::move(ranges), "1", "of the axes of the branch's pictures so far");
+  group.put("between", memory.between, "1", "parameters of the points within the last step");
   if (!memory.held) return;
   put_events(group, "held", {*memory.held});
   put_unknowns(group, "held_u", memory.held_u.get(), shared);
@@ -83,6 +88,10 @@ solve::BranchMemory read_memory(const io::Group& group, Vec like) {
   for (std::size_t k = 0; k + 1 < folds.size(); k += 2) memory.folds.emplace_back(folds[k], folds[k + 1]);
   memory.met = events_of(group, "met");
   memory.warm = group.reals("warm");
+  memory.born = group.integer("born") != 0;
+  const auto& ranges = group.reals("ranges");
+  for (std::size_t k = 0; k + 1 < ranges.size(); k += 2) memory.ranges.emplace_back(ranges[k], ranges[k + 1]);
+  memory.between = group.reals("between");
   if (group.has_dataset("held")) {
     memory.held = events_of(group, "held").front();
     memory.held_u = unknowns_of(group, "held_u", like);

@@ -23,6 +23,12 @@ struct BranchStep {
   deck::Quantity max;
 };
 
+/// Of solve::ContinuationOptions.
+inline constexpr double default_picture_tolerance = 0.01;
+inline constexpr const char* text_of_picture_tolerance =
+    "how far a curve may lie from the line between two points, over the size of its picture: points are computed "
+    "between the ends of a step until the lines are as near; 0: none";
+
 /// How a branch goes on from a point.
 enum class Following { arclength, natural };
 [[nodiscard]] std::span<const deck::Name<Following>> names(Following);

@@ -700,6 +700,7 @@ def sharp_points():
     assert np.allclose(np.interp([3.25, 3.5, 4.5], x, y), [0.975, 1.65, 1.65]) and np.isclose(branch.at(peak, (3, 0.5)), 1.65)
     smooth = np.sin(np.linspace(0, np.pi, 9))
     assert not branch.straight(smooth).any()
+    assert not curves.Branch(at, filled=True).straight(peak).any(), "the program has put points where the picture bends"
 
 
 def courses_of_multipliers():

@@ -29,7 +29,8 @@ solve::BranchState copy(const solve::BranchState& s) {
 }
 
 solve::BranchMemory copy(const solve::BranchMemory& m) {
-  solve::BranchMemory c{copy(m.before), m.earlier, m.visited, m.folds, m.met, m.held, {}, m.warm};
+  solve::BranchMemory c{copy(m.before), m.earlier, m.visited, m.folds,  m.met, m.held, {},
+                        m.warm,         m.born,    m.ranges,  m.between};
   if (m.held) c.held_u = copy(m.held_u.get());
   return c;
 }

@@ -139,6 +139,7 @@ Follower::Follower(ExtendedProblem& problem, core::Vector u, const ContinuationO
   here_.point = std::move(restart->point);
   ds_ = restart->step;
   memory_ = std::move(restart->memory);
+  memory_.born = memory_.born || here_.point.index < 0;
   stage_ = Stage::advance;
 }
 
@@ -172,7 +173,7 @@ void Follower::begin() {
   if (!first.converged) return finish(fmt::format("no solution at the start of the branch: {}", first.reason), false);
   here_.point.newton_iterations = first.iterations;
   inspect(here_, nullptr);
-  accept_point();
+  accept_point(here_.point.step);
   found_.push_back({{ResumePoint{here_.point, ds_, &memory_}, here_.u.get(), here_.tangent.get()}, {}});
   stage_ = Stage::renew;
   at_start_ = true;
@@ -192,7 +193,7 @@ void Follower::step() {
   const double margin = 1e-10 * std::max(std::abs(options_.to), std::abs(options_.to - options_.from));
   if (direction_ * (here_.point.parameter - options_.to) >= -margin)
     return finish("reached the end of its range", true);
-  if (here_.point.index + 1 >= options_.max_points) return finish("reached the largest number of points", false);
+  if (here_.point.steps() + 1 >= options_.max_points) return finish("reached the largest number of points", false);
   if (options_.back ? direction_ * rounded(here_.point.parameter - *options_.back) < 0
                     : direction_ * rounded(here_.point.parameter - options_.from) < -std::abs(options_.max_step))
     return finish("turned back beyond the start of its range", true);
@@ -242,6 +243,7 @@ void Follower::step() {
   const bool comparable = !questions_.stability || !here_.point.stability.values.empty();
   if (questions_.events && comparable)
     events(memory_.earlier ? &*memory_.earlier : nullptr, memory_.before.u ? &memory_.before : nullptr, here_, next);
+  const double step = comparable ? fill(here_, next) : next.point.step;
   memory_.earlier.reset();
   if (memory_.before.u) memory_.earlier = std::move(memory_.before.point);
   memory_.before = std::move(here_);
@@ -251,7 +253,7 @@ void Follower::step() {
   const int k = result.effort;
   ds_ = rounded(std::min(options_.max_step, ds_ * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
   ds_ = std::max(ds_, options_.min_step);
-  accept_point();
+  accept_point(step);
   stage_ = Stage::adapt;
   if (limit.limited) {
     finish(questions_.why(here_.u.get()), false);
@@ -262,7 +264,7 @@ void Follower::step() {
 
 void Follower::adapt_here() {
   // What is held back lies on this mesh.
-  if (options_.adapt_every > 0 && here_.point.index % options_.adapt_every == 0 && !memory_.held &&
+  if (options_.adapt_every > 0 && here_.point.steps() % options_.adapt_every == 0 && !memory_.held &&
       problem_.adapt(here_.u, here_.tangent)) {
     forget_points();
     NewtonResult again;

@@ -37,7 +37,11 @@ private:
   void meet(LocatedEvent found, core::Vector u);
   // Their mesh is gone, or they have nothing to compare with.
   void forget_points() { memory_.before = {}, memory_.earlier.reset(); }
-  void accept_point() { found_.push_back({{here_.point, here_.u.get()}, {}}); }
+  void accept_point(double step) {
+    BranchPoint shown = here_.point;
+    shown.step = step;
+    found_.push_back({{std::move(shown), here_.u.get()}, {}});
+  }
   // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
   void inspect(State& s, Vec along);
   void look_at(State& s, Vec along);
@@ -94,6 +98,26 @@ private:
   void around(const State& a, State& middle, const State& b);
   bool split(const State& a, const State& b, State& middle, State& rest);
   void suspect(const State& a, const State& b, std::string why);
+
+  // Points between those of a step, where a picture of the branch bends; gives b its index, and returns its arclength
+  // from the last of them.
+  double fill(const State& a, State& b);
+  using Curves = std::vector<std::vector<double>>;
+  // Two points with their neighbours, which may be unknown.
+  struct Gap {
+    const BranchPoint* before;
+    const State &a, &b;
+    const BranchPoint* after;
+  };
+  void widen(const State& s, const Curves& drawn);
+  void halve(const Gap& s, const Curves& first, const Curves& last, int depth, std::vector<State>& inner);
+  [[nodiscard]] double bend(const Gap& s, const Curves& first, const Curves& last);
+  [[nodiscard]] bool middle(const State& a, const State& b, State& to);
+  [[nodiscard]] core::Vector cubic(const State& a, const State& b, double part) const;
+  // How much a direction leads on from a in the measure of distance().
+  [[nodiscard]] double progress(const State& a, Vec direction) const;
+  // Events lie behind the points that were filled in before them.
+  void renumber(const State& a, const std::vector<State>& inner);
 
   // An item that waits, with its solution unless that is here_'s.
   struct Found {

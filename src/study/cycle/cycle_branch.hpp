@@ -37,6 +37,7 @@ struct CycleBranchOptions {
   int multipliers = 6;             ///< Floquet multipliers to report, the largest
   int period = 1;                  ///< revolutions per cycle
   int max_points = 500;
+  double picture_tolerance = default_picture_tolerance;
   std::optional<double> max_eccentricity;  ///< of a journal per clearance, at which a branch ends as in contact
   std::vector<Event> detect{Event::cyclic_fold, Event::flip, Event::neimark_sacker};
   bool follow_flips = false;  ///< also follow the cycles of twice the period born at the flips found

@@ -103,7 +103,9 @@ void describe(deck::Description<CycleBranchOptions>& d) {
         "Floquet multipliers to report, the largest; where they are searched for (films with states, whole shafts), "
         "those above 0.2, as many as this or 24");
   d.add("period", &O::period, deck::in(1, 1e4), "revolutions per cycle");
-  d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
+  d.add("max_points", &O::max_points, deck::positive,
+        "points after which the branch ends, without those that `picture_tolerance` adds");
+  d.add("picture_tolerance", &O::picture_tolerance, deck::in(0, 1), text_of_picture_tolerance);
   d.add("max_eccentricity", &O::max_eccentricity, deck::between(0, 1),
         "the branch ends, as in contact, where the journal's eccentricity per clearance reaches this; no limit if not "
         "given");

@@ -140,6 +140,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
                        read_cycle(nearest.group("cycle"), stored())};
     leaves_ = nearest.integer("leaves") != 0;
   }
+  filled_ = restart.point.filled;
   largest_ = state.real("largest_difference");
   system_->set_parameter(cycle.parameter);
   const solve::Cycle orbit = problem_->orbit(restart.u.get());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/open_bore.hpp"
@@ -57,6 +58,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
   continuation_.beta_2 = options_.parameter.beta_2;
   continuation_.kind = kind_of(options_.parameter.continuation);
   continuation_.max_points = options_.max_points;
+  continuation_.picture_tolerance = options_.picture_tolerance;
   const bool adapt = options_.method == CycleBranchOptions::Method::collocation && options_.adapt_mesh;
   continuation_.adapt_every = adapt ? options_.adapt_every : 0;
   continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
@@ -151,18 +153,28 @@ void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle orbit = problem_->orbit(u);
   record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
   nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
-  add_margin(point.parameter, orbit);
+  if (!point.between) add_margin(point.parameter, orbit);
   report_between(last_ ? *last_ : cycle, cycle);
   watch(point, cycle);
-  if ((point.index + 1) % points_per_bar == 0 && !point.stability.values.empty())
+  if (!point.between && (point.steps() + 1) % points_per_bar == 0 && !point.stability.values.empty())
     judge_multiplier({point.index, point.parameter, std::abs(point.stability.values[0]), cycle});
   last_ = cycle;
+  if (!point.between) of_last_step_ = 1 + point.filled - std::exchange(filled_, point.filled);
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
   context_.results.progress(fmt::format(
       "{}: point {}, {} {:.2f} {}{}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
       context_.results.summary().name, point.index + 1, options_.parameter.path, point.parameter, unit_,
       context_.results.left_over(point.parameter, continuation_.from, continuation_.to, unit_), point.step,
       point.newton_iterations, cycle.intervals(), mu, context_.results.seconds()));
+}
+
+std::vector<std::vector<double>> CycleFollower::drawn(Vec u) {
+  system_->set_parameter(problem_->gather(u).parameter);
+  const solve::Cycle orbit = problem_->orbit(u);
+  auto axes = record_.drawn(orbit, problem_->orbit_scheme(), *system_);
+  const NodeRecord::NodeSizes nodes = nodes_.sizes(orbit, problem_->orbit_scheme(), *system_);
+  for (std::size_t k = 0; k < nodes.x.size(); ++k) axes.push_back({nodes.amplitude[k], nodes.x[k], nodes.y[k]});
+  return axes;
 }
 
 // Cycles asked for at given parameters, solved there and not interpolated.
@@ -261,6 +273,7 @@ StudyResult CycleFollower::run() {
   callbacks.stability = [this](Vec) { return stability_of(*problem_, *system_); };
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
+  callbacks.drawn = [this](Vec v) { return drawn(v); };
   if (auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get()))
     callbacks.refine = [this, cycles](const solve::LocatedEvent& e, Vec v, Vec t) {
       return solve::refine(*cycles, e, v, t, newton_);
@@ -300,8 +313,10 @@ StudyResult CycleFollower::run() {
   if (returned_) {
     // The step that showed the return landed on what the branch was born of, or beyond it on the branch already
     // followed.
-    record_.drop_last();
-    nodes_.drop_last();
+    for (int k = 0; k < of_last_step_; ++k) {
+      record_.drop_last();
+      nodes_.drop_last();
+    }
     std::erase_if(changes_, [this](const auto& c) { return c.after + 1 >= static_cast<int>(record_.points()); });
     if (seed_) close_at_flip(end.parameter);
     results.summary().suspected.resize(suspicions);
@@ -318,9 +333,10 @@ StudyResult CycleFollower::run() {
   put_changes(group.child("changes"), changes_, unit_);
   group.set("parameter", options_.parameter.path);
   group.set("parameter_unit", unit_);
+  group.set("picture_tolerance", options_.picture_tolerance);
   group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
   group.set("period_turns", options_.period);
-  results.summary().points = end.points - (returned_ ? 1 : 0);
+  results.summary().points = end.points - (returned_ ? of_last_step_ : 0);
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_, stored());
   if (keeps_located_) write(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);

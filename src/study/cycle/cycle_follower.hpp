@@ -161,6 +161,8 @@ private:
   /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
   [[nodiscard]] double room(const solve::Cycle& orbit, system::Plant& system) const;
   void on_point(const solve::BranchPoint& point, Vec u);
+  /// What pictures show of a solution, by their axes.
+  [[nodiscard]] std::vector<std::vector<double>> drawn(Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   /// Name of a piece of work about the event that comes next.
   [[nodiscard]] std::string piece(const std::string& what) const;
@@ -255,6 +257,8 @@ private:
   std::vector<Located> located_;  // one for each bifurcation of the summary
   Eigen::MatrixXd vanishing_;     // of the last point of a branch that may return
   double largest_ = 0;            // its largest norm so far
+  int filled_ = 0;                // points between the ends of steps so far
+  int of_last_step_ = 0;          // points, with those between its ends
   bool returned_ = false;
 };
 

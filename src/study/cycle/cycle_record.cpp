@@ -168,6 +168,17 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
   orbits_.push_back(std::move(motion));
 }
 
+std::vector<std::vector<double>> CycleRecord::drawn(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                                    system::Plant& system) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  std::vector<std::vector<double>> axes;
+  for (std::size_t i = 0; i < e.radius.size(); ++i) {
+    axes.push_back({e.x_max[i], e.x_min[i]});
+    axes.push_back({e.y_max[i], e.y_min[i]});
+  }
+  return axes;
+}
+
 double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system) const {
   const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
   double largest = 0;
@@ -317,6 +328,7 @@ solve::Stability read_stability(const io::Group& group) {
 
 void write_point(io::Group& group, const solve::BranchPoint& point) {
   group.set("index", point.index);
+  group.set("filled", point.filled);
   group.set("parameter", point.parameter);
   group.set("slope", point.slope);
   group.set("step", point.step);
@@ -328,6 +340,7 @@ void write_point(io::Group& group, const solve::BranchPoint& point) {
 solve::BranchPoint read_point(const io::Group& group) {
   solve::BranchPoint point;
   point.index = static_cast<int>(group.integer("index"));
+  point.filled = static_cast<int>(group.integer("filled"));
   point.parameter = group.real("parameter");
   point.slope = group.real("slope");
   point.step = group.real("step");

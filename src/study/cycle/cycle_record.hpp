@@ -32,6 +32,9 @@ public:
   void close(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale);
   /// Removes the last point.
   void drop_last();
+  /// What pictures show of a cycle, by their axes: [place and direction][largest, smallest].
+  [[nodiscard]] std::vector<std::vector<double>> drawn(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                                       system::Plant& system) const;
   /// Largest eccentricity per clearance of any journal on a cycle.
   [[nodiscard]] double eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
                                     system::Plant& system) const;

@@ -25,10 +25,10 @@ std::vector<io::Table::Column> columns(const std::string& unit, const std::vecto
 NodeRecord::NodeRecord(std::vector<int> nodes, std::string unit)
     : nodes_(std::move(nodes)), unit_(std::move(unit)), table_(columns(unit_, nodes_)) {}
 
-void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                        system::Plant& system) {
+NodeRecord::NodeSizes NodeRecord::sizes(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                        system::Plant& system) const {
   const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
-  if (nodes_.empty() || !rotor) return;
+  if (nodes_.empty() || !rotor) return {};
   StateRows states(system);
   std::vector<std::vector<double>> x(nodes_.size()), y(nodes_.size());
   for (int k = 0; k < samples_per_turn; ++k) {
@@ -49,15 +49,21 @@ void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve
     const auto [low, high] = std::minmax_element(v.begin(), v.end());
     return (*high - *low) / 2;
   };
-  std::vector<double> amplitude(nodes_.size(), 0.0), half_x, half_y;
+  NodeSizes out{std::vector<double>(nodes_.size(), 0.0), {}, {}};
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const double mx = mean(x[i]), my = mean(y[i]);
     for (std::size_t k = 0; k < x[i].size(); ++k)
-      amplitude[i] = std::max(amplitude[i], std::hypot(x[i][k] - mx, y[i][k] - my));
-    half_x.push_back(half_travel(x[i]));
-    half_y.push_back(half_travel(y[i]));
+      out.amplitude[i] = std::max(out.amplitude[i], std::hypot(x[i][k] - mx, y[i][k] - my));
+    out.x.push_back(half_travel(x[i]));
+    out.y.push_back(half_travel(y[i]));
   }
-  table_.append({{parameter}, amplitude, half_x, half_y});
+  return out;
+}
+
+void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                        system::Plant& system) {
+  const NodeSizes now = sizes(cycle, scheme, system);
+  if (!now.x.empty()) table_.append({{parameter}, now.amplitude, now.x, now.y});
 }
 
 void NodeRecord::drop_last() {

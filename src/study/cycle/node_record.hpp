@@ -16,6 +16,13 @@ class NodeRecord {
 public:
   NodeRecord(std::vector<int> nodes, std::string unit);
 
+  /// Of each node [m], 0-peak; empty without nodes, or if the system is no rotor.
+  struct NodeSizes {
+    std::vector<double> amplitude;  ///< largest distance from the mean position
+    std::vector<double> x, y;       ///< half the travel
+  };
+  /// Collective on the system's communicator.
+  [[nodiscard]] NodeSizes sizes(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system) const;
   /// Adds a cycle with its parameter in the unit of the branch. Collective on the system's communicator. Nothing
   /// happens without nodes, or if the system is no rotor.
   void append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system);

@@ -138,6 +138,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   continuation.beta_2 = options.parameter.beta_2;
   continuation.kind = kind_of(options.parameter.continuation);
   continuation.max_points = options.max_points;
+  continuation.picture_tolerance = options.picture_tolerance;
   continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
   continuation.newton.max_iterations = 20;
 
@@ -208,6 +209,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   };
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec v) {
     problem.to_state(v, x.get());
+    system->set_parameter(point.parameter * scale);  // closer looks may have left it elsewhere
     std::vector<double> px, py;
     const system::Observed seen = system->observe(x.get());
     for (const auto& j : seen.shown) {
@@ -216,9 +218,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
       py.push_back(j.position[1]);
     }
     const auto& s = point.stability;
-    margins.add(point.parameter, films.margin(seen.film_thickness));
+    if (!point.between) margins.add(point.parameter, films.margin(seen.film_thickness));
     arclength += point.step;
-    if (films.exists()) {
+    if (films.exists() && !point.between) {
       const std::vector<double> whole = system->gather(x.get());
       spread.add({{{0, 1},
                    Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
@@ -282,6 +284,12 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                          found.sensitivity});
     }
   };
+  callbacks.drawn = [&](Vec v) {
+    problem.to_state(v, x.get());
+    std::vector<std::vector<double>> axes;
+    for (const auto& j : system->shown_at(x.get())) axes.push_back({j.position[0], j.position[1]});
+    return axes;
+  };
   callbacks.refine = [&](const solve::LocatedEvent& e, Vec v, Vec t) {
     return solve::refine(*system, problem, e, v, t,
                          to_refine(continuation.newton, law_of(context.machine, context.layout)));
@@ -319,6 +327,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   put_bifurcations(group, results.summary().bifurcations);
   group.set("parameter", options.parameter.path);
   group.set("parameter_unit", unit);
+  group.set("picture_tolerance", options.picture_tolerance);
   const std::string si_unit =
       deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path);
   put_changes(group.child("changes"), changes, unit);

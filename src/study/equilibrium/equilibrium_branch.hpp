@@ -11,6 +11,7 @@ struct EquilibriumBranchOptions {
   Parameter parameter;
   std::optional<deck::Quantity> speed;  ///< [rad/s], where the parameter is not the speed
   int max_points = 500;
+  double picture_tolerance = default_picture_tolerance;
   std::vector<Event> detect{Event::hopf, Event::fold};
 };
 void describe(deck::Description<EquilibriumBranchOptions>& d);

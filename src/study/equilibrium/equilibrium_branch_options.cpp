@@ -10,7 +10,9 @@ void describe(deck::Description<EquilibriumBranchOptions>& d) {
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.embed(&O::parameter);
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, where the parameter is another one");
-  d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
+  d.add("max_points", &O::max_points, deck::positive,
+        "points after which the branch ends, without those that `picture_tolerance` adds");
+  d.add("picture_tolerance", &O::picture_tolerance, deck::in(0, 1), text_of_picture_tolerance);
   d.add("detect", &O::detect, "bifurcations to locate");
   d.check([](const O& o, const deck::Report& r) {
     for (std::size_t i = 0; i < o.detect.size(); ++i)

@@ -38,6 +38,9 @@ struct ContinuationOptions {
   /// without the parameter; pi: any. [rad]. Source: Fey (1992); van de Vrande (2001), Sec. 3.3.
   double beta_1 = std::numbers::pi / 6, beta_2 = std::numbers::pi;
   double location_tolerance = 1e-6;  ///< of a bifurcation, in scaled parameter
+  /// How far a curve of BranchQuestions::drawn may lie from the line between two points, in units of its picture;
+  /// beyond that points are computed between them. 0: none.
+  double picture_tolerance = 0;
   NewtonOptions newton;
 };
 
@@ -68,13 +71,17 @@ enum class Event { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point }
 
 /// One accepted point.
 struct BranchPoint {
-  int index = 0;
+  int index = 0;         ///< its row in a table of all points
+  int filled = 0;        ///< how many of the points up to it lie between the ends of steps
+  bool between = false;  ///< this one does
   double parameter = 0;  ///< scaled
   double slope = 0;      ///< scaled parameter per arclength: its sign changes at folds
   double step = 0;       ///< arclength from the previous point
   int newton_iterations = 0;
   Stability stability;
   std::vector<double> monitors;
+
+  [[nodiscard]] int steps() const { return index - filled; }
 };
 
 struct LocatedEvent {
@@ -132,6 +139,10 @@ struct BranchQuestions {
   /// which is located, or at a start where it is not positive. `why` says what the limit is.
   std::function<double(Vec u)> limit;
   std::function<std::string(Vec u)> why;
+  /// What pictures show over the parameter, by their axes: [axis][curve]. Where a curve bends, points are computed
+  /// between the ends of a step (ContinuationOptions::picture_tolerance). As many at every solution, and solutions that
+  /// are not exact must do.
+  std::function<std::vector<std::vector<double>>(Vec u)> drawn;
   bool cycles = false;  ///< names the events of cycles instead of those of equilibria
   bool events = true;   ///< looks for events between points
   bool zeros = true;    ///< and for zeros of the monitors
@@ -156,6 +167,11 @@ struct BranchMemory {
   std::optional<LocatedEvent> held;
   core::Vector held_u;
   std::vector<double> warm;  ///< of the problem, as the last look left it
+  bool born = false;         ///< at a bifurcation, and not where the range begins
+  /// Least and largest value so far of the parameter, of the least stable value's distance from the border of stability
+  /// and of each axis of BranchQuestions::drawn.
+  std::vector<std::pair<double, double>> ranges;
+  std::vector<double> between;  ///< parameters of the points within the last step
 };
 
 /// Where to go on after an interruption. Without the memory, the next steps may miss what only several points show.
@@ -196,10 +212,10 @@ class Follower;
 ///     while (auto item = branch.next()) ...
 ///     branch.end().reason ...
 ///
-/// Of each step first what lies on it (events, zeros, suspicions), then its point, then what an adaptation of the
-/// discretisation passed over, then the resume point. Work is done in next() alone, so that whoever stops asking stops
-/// the continuation. Decisions use integer counts and rounded values only: any number of ranks takes the same steps.
-/// Collective on problem.comm(); `problem` must outlive it.
+/// Of each step first what lies on it (events, zeros, suspicions), then the points between its ends, then its point,
+/// then what an adaptation of the discretisation passed over, then the resume point. Work is done in next() alone, so
+/// that whoever stops asking stops the continuation. Decisions use integer counts and rounded values only: any number
+/// of ranks takes the same steps. Collective on problem.comm(); `problem` must outlive it.
 class BranchIterator {
 public:
   BranchIterator(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
