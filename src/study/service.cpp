@@ -84,7 +84,7 @@ public:
     // What a film has no room for is no vibration where another study gives one.
     if (!vibration_) vibration_ = std::move(beyond_films_);
     for (const auto* fact :
-         {&threshold_, &decrement_, &below_, &above_, &film_, &pressure_, &temperature_, &vibration_})
+         {&threshold_, &whirl_, &decrement_, &below_, &above_, &film_, &pressure_, &temperature_, &vibration_})
       if (*fact) service_.facts.push_back(**fact);
     const auto missing = [&](const std::optional<ServiceFact>& fact, const char* what, const char* how) {
       if (!fact) service_.facts.push_back({what, {}, {}, how, {}});
@@ -140,14 +140,21 @@ private:
       if (!nearest || std::abs(l.at - speed_) < std::abs(nearest->at - speed_)) nearest = &l;
     }
     if (nearest) {
-      const double margin = (nearest->stable_below ? 1 : -1) * (nearest->at - speed_) / speed_;
-      keep(threshold_,
-           {"margin in speed to the threshold of stability",
-            {},
-            {100 * margin, "%", bar(100 * nearest->error / speed_)},
-            nearest->stable_below ? "" : "the machine is unstable below it",
-            s.name},
-           false);
+      const double margin = 100 * (nearest->stable_below ? 1 : -1) * (nearest->at - speed_) / speed_;
+      const Quantity q{margin, "%", bar(100 * nearest->error / speed_)};
+      // Of one limit that two studies located, the smaller bar.
+      const double kept = threshold_ && threshold_->value.bar() > 0 ? threshold_->value.bar() : 0;
+      const bool same = kept > 0 && q.bar() > 0 && std::abs(threshold_->value.value - margin) <= kept + q.bar();
+      if (!same || q.bar() < kept) {
+        if (same) threshold_.reset();
+        keep(threshold_,
+             {"margin in speed to the threshold of stability",
+              {},
+              q,
+              nearest->stable_below ? "" : "the machine is unstable below it",
+              s.name},
+             false);
+      }
     }
     return verdict;
   }
@@ -295,10 +302,36 @@ private:
     if (group && group->has_attribute("speed") && is_service(group->real("speed"))) vote(s.stability, s.name);
   }
 
+  // Stable whirl without unbalance: where it exists, a disturbance can start it although the position is stable.
+  void take_whirl(const StudySummary& s) {
+    const io::StabilityRange* first = nullptr;
+    const auto ends = [](const io::StabilityRange& r) {
+      const auto [low, high] = std::minmax(r.from, r.to);
+      return std::pair{deck::number_to_si(low, r.unit), deck::number_to_si(high, r.unit)};
+    };
+    for (const io::StabilityRange& r : s.ranges)
+      if (r.stability == "stable" && ends(r).second >= speed_ * (1 - same_speed) &&
+          (!first || ends(r).first < ends(*first).first))
+        first = &r;
+    if (!first) return;
+    const double low = ends(*first).first, error = error_at(s, low);
+    const Quantity from{deck::from_si(low, first->unit), first->unit, bar(deck::from_si(error, first->unit))};
+    const double margin = 100 * (low - speed_) / speed_;
+    keep(whirl_,
+         {"stable whirl, which a disturbance can start, from",
+          {},
+          from,
+          low > speed_ * (1 + same_speed) ? fmt::format("{:.1f} % above the service speed", margin)
+                                          : "the service speed is within its range",
+          s.name},
+         false);
+  }
+
   // Half of the travel of the journals, and the thinnest film, in a cycle that was asked for at this speed.
   void take_cycles(const StudySummary& s) {
     const io::Group* group = group_of(s);
     if (!group || !group->has_attribute("parameter") || group->text("parameter") != "speed") return;
+    if (group->has_attribute("unbalance") && group->text("unbalance").empty()) take_whirl(s);
     const double here = deck::from_si(speed_, group->text("parameter_unit"));
     for (const auto& [name, q] : s.values) {
       constexpr std::string_view travel = ".peak_to_peak.", film = ".min_thickness.";
@@ -421,7 +454,7 @@ private:
   io::Service service_;
   std::vector<std::string> verdicts_, voters_;
   std::pair<std::string, std::string> beside_;  // verdict and voter of listed speeds on either side: for want of others
-  std::optional<ServiceFact> threshold_, decrement_, below_, above_, peak_below_, peak_above_, film_, pressure_,
+  std::optional<ServiceFact> threshold_, whirl_, decrement_, below_, above_, peak_below_, peak_above_, film_, pressure_,
       temperature_, vibration_, beyond_films_;
 };
 

@@ -8,9 +8,7 @@
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
-namespace {
 
-// The bar of what was located at a speed.
 double error_at(const io::StudySummary& s, double speed) {
   double error = 0;
   const auto take = [&](double value, const std::string& unit, double bar) {
@@ -23,8 +21,6 @@ double error_at(const io::StudySummary& s, double speed) {
       take(q.value, q.unit, q.bar());
   return error;
 }
-
-}  // namespace
 
 std::vector<SpeedLimit> limits_of(const io::StudySummary& s) {
   std::vector<SpeedLimit> out;

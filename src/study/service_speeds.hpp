@@ -20,6 +20,9 @@ struct SpeedLimit {
   bool stable_below;
 };
 
+/// The bar of what a study located at `speed` [rad/s]; 0 if it located nothing there or has no bar.
+[[nodiscard]] double error_at(const io::StudySummary& summary, double speed);
+
 /// Those between the stretches over the speed that a branch or modes found (`StudySummary::ranges`).
 [[nodiscard]] std::vector<SpeedLimit> limits_of(const io::StudySummary& summary);
 

@@ -301,6 +301,44 @@ TEST(Service, LimitsOfModesDecideBetweenTheirSpeeds) {
   EXPECT_NEAR(margin(1160).value, 100 * 10.0 / 1160, 1e-9);
 }
 
+TEST(Service, OfOneLimitTheSmallerBarCounts) {
+  io::StudySummary s = modes_with({"stable", "unstable"});
+  s.ranges = {{3500, 4990, "rpm", "stable"}, {4990, 5200, "rpm", "unstable"}};
+  s.set("threshold", 4990, "rpm", {{"uncertainty", 90}});
+  for (const auto& studies : {std::vector{branch(5000, 10), s}, std::vector{s, branch(5000, 10)}}) {
+    const auto* margin = fact(at(3600, studies), "margin in speed to the threshold of stability");
+    EXPECT_EQ(margin->study, "balanced");
+    EXPECT_NEAR(margin->value.value, 100 * 1400.0 / 3600, 1e-9);
+  }
+}
+
+// A subcritical threshold at 5000 rpm: whirl goes down to a fold at 4680 +- 20 rpm and is stable from there upwards.
+TEST(Service, TellsFromWhichSpeedWhirlIsPossible) {
+  io::StudySummary s;
+  s.name = "whirl";
+  s.kind = "cycle_branch";
+  s.ranges = {{5000, 4680, "rpm", "unstable"}, {4680, 6000, "rpm", "stable"}};
+  s.bifurcations.resize(1);
+  s.bifurcations[0].value = 4680;
+  s.bifurcations[0].unit = "rpm";
+  s.bifurcations[0].uncertainty = 20;
+  io::Group root;
+  root.child("whirl").set("parameter", "speed");
+  root.child("whirl").set("parameter_unit", "rpm");
+  root.child("whirl").set("unbalance", "");
+  const char* what = "stable whirl, which a disturbance can start, from";
+  const auto below = service_of({4000 * rpm, "rpm"}, std::vector{s}, root);
+  ASSERT_NE(fact(below, what), nullptr);
+  EXPECT_EQ(fact(below, what)->value.value, 4680);
+  EXPECT_NEAR(fact(below, what)->value.bar(), 20, 1e-9);
+  EXPECT_EQ(fact(below, what)->mark, "17.0 % above the service speed");
+  const auto within = service_of({4800 * rpm, "rpm"}, std::vector{s}, root);
+  EXPECT_EQ(fact(within, what)->mark, "the service speed is within its range");
+  EXPECT_EQ(fact(service_of({6500 * rpm, "rpm"}, std::vector{s}, root), what), nullptr);
+  root.child("whirl").set("unbalance", "impeller");  // forced vibration
+  EXPECT_EQ(fact(service_of({4000 * rpm, "rpm"}, std::vector{s}, root), what), nullptr);
+}
+
 // Whirl of a branch ends at 4470 +- 50 rpm; the branch may run downwards.
 TEST(Service, EveryLimitOfABranchHasItsBar) {
   io::StudySummary up = branch(1500, 1), down = up;
