@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <set>
 
 namespace whirl::app {
 
@@ -57,25 +59,66 @@ std::string in_lines(const std::string& text, std::size_t indent) {
   return out + line + "\n";
 }
 
+namespace {
+
+bool is_empty(const std::string& cell) {
+  return cell.empty() || cell == "-";
+}
+
+// 12.5 +- 0.2, (1.2 +- 0.1)e-05, -3, 2 fwd
+bool is_number(const std::string& cell) {
+  const std::size_t first = cell.find_first_not_of("(+-");
+  return first != std::string::npos && std::isdigit(static_cast<unsigned char>(cell[first])) != 0;
+}
+
+}  // namespace
+
 std::string CellTable::text() const {
   if (rows_.size() < 2) return {};
   constexpr std::size_t indent = 4, gap = 2;
   std::vector<std::size_t> width(rows_[0].size()), shown;
+  std::vector<bool> words(width.size());
   for (std::size_t c = 0; c < width.size(); ++c) {
     for (const auto& row : rows_) width[c] = std::max(width[c], row[c].size());
-    const auto filled = [c](const auto& row) { return row[c] != "-" && !row[c].empty(); };
-    if (c > 0 && std::any_of(rows_.begin() + 1, rows_.end(), filled)) shown.push_back(c);
+    words[c] = std::none_of(rows_.begin() + 1, rows_.end(), [c](const auto& row) { return is_number(row[c]); });
+    if (c > 0 && !std::all_of(rows_.begin() + 1, rows_.end(), [c](const auto& row) { return is_empty(row[c]); }))
+      shown.push_back(c);
   }
+  // The columns that tell the rows apart stand in each block.
+  std::vector<std::size_t> keys{0};
+  const auto told_apart = [&] {
+    std::set<std::vector<std::string>> seen;
+    return std::all_of(rows_.begin() + 1, rows_.end(), [&](const auto& row) {
+      std::vector<std::string> cells;
+      for (const std::size_t c : keys) cells.push_back(row[c]);
+      return seen.insert(std::move(cells)).second;
+    });
+  };
+  constexpr std::size_t most_keys = 3;
+  while (!told_apart() && keys.size() < std::min(most_keys, shown.size())) keys.push_back(shown[keys.size() - 1]);
+  if (!told_apart()) keys.resize(1);
+  shown.erase(shown.begin(), shown.begin() + static_cast<std::ptrdiff_t>(keys.size() - 1));
+  std::size_t narrowest = indent + width[0];
+  for (auto c = keys.begin() + 1; c != keys.end(); ++c) narrowest += gap + width[*c];
+
   std::string out;
   auto from = shown.begin();
   do {
     auto to = from;
-    std::size_t wide = indent + width[0];
+    std::size_t wide = narrowest;
     while (to != shown.end() && (to == from || wide + gap + width[*to] <= widest_line())) wide += gap + width[*to++];
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const auto& row = rows_[r];
+      const bool goes_on = from == shown.begin() || r == 0 || (to == shown.end() && !remarks_[r].empty()) ||
+                           std::any_of(from, to, [&](std::size_t c) { return !is_empty(row[c]); });
+      if (!goes_on) continue;
       std::string line = fmt::format("{:{}}{:<{}}", "", indent, row[0], width[0]);
-      for (auto c = from; c != to; ++c) line += fmt::format("{:{}}{:>{}}", "", gap, row[*c], width[*c]);
+      const auto add = [&](std::size_t c) {
+        line += words[c] ? fmt::format("{:{}}{:<{}}", "", gap, row[c], width[c])
+                         : fmt::format("{:{}}{:>{}}", "", gap, row[c], width[c]);
+      };
+      std::for_each(keys.begin() + 1, keys.end(), add);
+      std::for_each(from, to, add);
       out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
       if (to == shown.end() && !remarks_[r].empty()) out += in_lines(remarks_[r], 2 * indent);
     }

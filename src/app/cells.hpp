@@ -17,9 +17,9 @@ namespace whirl::app {
 /// `text` as in_lines on a terminal, on one line of any length where other programs read it.
 [[nodiscard]] std::string paragraph(const std::string& text, std::size_t indent);
 
-/// Rows of cells, right-aligned below their heads, the first column left-aligned. Columns without a number are left
-/// out. A table wider than widest_line goes on below with the first column again. A remark stands below its row, in the
-/// last block.
+/// Rows of cells below their heads: numbers right-aligned, words and the first column left-aligned. Empty columns are
+/// left out. A table wider than widest_line goes on below with the columns that tell its rows apart and the rows that
+/// go on. A remark stands below its row, in the last block.
 class CellTable {
 public:
   explicit CellTable(std::vector<std::string> heads) : rows_{std::move(heads)} {}

@@ -16,13 +16,17 @@ namespace {
 // ": stable 600 to 4471 rpm, unstable to 5200 rpm"; nothing of a single stretch.
 std::string in_words(const std::vector<io::StabilityRange>& ranges) {
   constexpr std::size_t most = 9;
+  // Below, these places have bars.
+  const auto place = [](double at) {
+    return std::abs(at) < 1000 ? fmt::format("{:.4g}", at) : fmt::format("{:.0f}", at);
+  };
   std::string text;
   for (std::size_t k = 0; ranges.size() > 1 && k < ranges.size(); ++k) {
     const auto& r = ranges[k];
     if (k == most) return text + fmt::format(", and {} more stretches in summary.json", ranges.size() - most);
     const bool joined = k > 0 && ranges[k - 1].to == r.from;
-    text += fmt::format("{}{} {}{:.6g}", k == 0 ? ": " : ", ", r.stability,
-                        joined ? "to " : fmt::format("{:.6g} to ", r.from), r.to);
+    text += fmt::format("{}{} {}{}", k == 0 ? ": " : ", ", r.stability, joined ? "to " : place(r.from) + " to ",
+                        place(r.to));
   }
   return ranges.size() > 1 && ranges[0].unit != "1" ? text + " " + ranges[0].unit : text;
 }
@@ -62,7 +66,7 @@ std::string headline_text(const io::StudySummary& s) {
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
   if (!s.layout.empty()) text += paragraph(s.layout, 2);
   if (!s.stability.empty() && !s.brief.tells_stability) text += paragraph(s.stability + in_words(s.ranges), 2);
-  for (const std::string& w : s.warnings) text += paragraph("note: " + w, 2);
+  for (const std::string& w : s.warnings) text += paragraph("warning: " + w, 2);
   return text;
 }
 

@@ -51,8 +51,8 @@ text, s = run(train / "static.yaml", "static")
 sits = s["at service speed"]
 for b in "B1", "B3", "B5":
     at = {k: sits[f"bearing.{b}.{k}"] for k in ("x", "y", "eccentricity.x", "eccentricity.y", "min_thickness", "max_pressure")}
-    row(text, b, [sits[f"load.{b}"] / 1e3, at["x"] * 1e6, at["y"] * 1e6, math.hypot(at["eccentricity.x"], at["eccentricity.y"]), at["min_thickness"] * 1e6])
-    row(text, b, [at["max_pressure"] / 1e6])
+    row(text, b, [sits[f"load.{b}"] / 1e3, at["x"] * 1e6, at["y"] * 1e6, math.hypot(at["eccentricity.x"], at["eccentricity.y"])])
+    row(text, b, [at["min_thickness"] * 1e6, at["max_pressure"] / 1e6])
 row(text, "B4", [s["alignment"]["elevation.B4"] * 1e6, s["alignment"]["reaction.B4"] / 1e3, s["alignment"]["reaction_aligned.B4"] / 1e3])
 
 short = source / "inputs" / "rigid_rotor" / "short_f1.yaml"
@@ -94,7 +94,7 @@ slim = ["--set", "rotor.segments.3.length=2 m", "--set", "studies=[{modes: {spee
 checked = subprocess.run([program, "check", str(source / "tests" / "app" / "friswell_591.yaml"), *slim], capture_output=True, text=True, timeout=300).stdout
 warned = [line for line in checked.split("\n") if line.startswith("  warning: ")]
 ran = [line for line in run(source / "tests" / "app" / "friswell_591.yaml", "slim", *slim)[0].split("\n") if line.startswith("  warning: ")]
-if not any("rotor.segments.3: length over stiffness diameter" in line for line in warned) or ran != warned:
+if not any("rotor.segments.3: length over stiffness diameter" in line for line in warned) or ran[:len(warned)] != warned:
     failures.append(f"warnings of a run {ran} and of a check {warned}")
 m = s["m"]
 row(text, "1", [m[f"critical.1.{k}"] for k in ("speed", "mode", "log_decrement", "amplification_factor")]
