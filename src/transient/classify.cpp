@@ -85,6 +85,10 @@ std::string distance(const Evidence& e, int period) {
                      known(e) ? ", " + largest(e) : "");
 }
 
+std::string without_bars(const Evidence& e) {
+  return e.exponents.empty() ? "no Lyapunov exponents were computed" : "no Lyapunov exponent has an error bar";
+}
+
 Verdict forced(const Evidence& e, int period) {
   const Sign first = known(e) ? sign_of(e, 0) : Sign::negative;
   if (const auto verdict = passing(e, period, "revolutions")) return *verdict;
@@ -95,7 +99,7 @@ Verdict forced(const Evidence& e, int period) {
   }
   if (const auto verdict = drifting(e)) return *verdict;
   const std::string none = fmt::format("no return within {} revolutions", e.returns.size());
-  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", none + ", no exponents of known uncertainty"};
+  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", none + ", " + without_bars(e)};
   if (first == Sign::positive) return {MotionKind::chaotic, 0, "chaotic", none + ", " + largest(e)};
   if (first == Sign::zero)
     return {MotionKind::quasi_periodic, 0, "quasi_periodic", none + ", " + largest(e) + ", " + trend(e).text()};
@@ -113,7 +117,7 @@ Verdict autonomous(const Evidence& e, int period) {
   if (const auto verdict = drifting(e)) return *verdict;
   const std::string none =
       e.returns.empty() ? "" : fmt::format("no return within {} crossings of the section, ", e.returns.size());
-  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", none + "no exponents of known uncertainty"};
+  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", none + without_bars(e)};
   if (sign_of(e, 0) == Sign::positive) return {MotionKind::chaotic, 0, "chaotic", none + largest(e)};
   int zeros = 0;
   for (std::size_t k = 0; k < e.exponents.size(); ++k) zeros += sign_of(e, k) == Sign::zero;

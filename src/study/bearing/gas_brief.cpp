@@ -15,28 +15,46 @@ io::Brief GasBearing::brief(const StudyResult& result, std::span<const io::Study
     brief.sentences.push_back(fmt::format("the film carries at most {}, at eccentricity {}",
                                           io::reading(v["capacity.load"]), io::reading(v["capacity.eccentricity"])));
   const std::string unit = options.speeds.front().unit;
-  const std::vector<io::BriefColumn> numbers{
-      {"load", "N"}, {"attitude", "rad"}, {"flow", "l/min"}, {"mass flow", "kg/s"}, {"power loss", "W"}};
-  const auto row_of = [&](std::vector<io::BriefCell> row, const std::string& head) {
-    for (const char* name : {"load", "attitude", "normal_flow", "mass_flow", "power_loss"})
-      row.emplace_back(v[head + name]);
+  const std::vector<io::BriefColumn> numbers{{"load", "N"},         {"attitude", "rad"}, {"normal flow", "l/min"},
+                                             {"mass flow", "kg/s"}, {"power loss", "W"}, {"Knudsen", "1"}};
+  bool supplied = false;
+  const auto row_of = [&](std::vector<io::BriefCell> row, const std::string& head, double knudsen) {
+    for (const char* name : {"load", "attitude"}) row.emplace_back(v[head + name]);
+    // A film without a supply takes nothing.
+    const bool takes = v[head + "mass_flow"].value != 0;
+    supplied = supplied || takes;
+    for (const char* name : {"normal_flow", "mass_flow"})
+      row.push_back(takes ? io::BriefCell(v[head + name]) : io::BriefCell());
+    row.emplace_back(v[head + "power_loss"]);
+    row.emplace_back(io::Quantity{knudsen, "1"});
     return row;
   };
-  const char* const note = "flow: of the gas at 0 degC and 101325 Pa; attitude: from the load to the journal";
-  io::BriefTable places{"Under the load", {{"speed", unit}, {"x", "m"}, {"y", "m"}, {"|e|/c", "1"}}, {}, note};
-  io::BriefTable curves{"Over the eccentricity", {{"speed", unit}, {"|e|/c", "1"}}, {}, note};
+  const auto knudsen_of = [&](const char* table, std::size_t k) {
+    const bool known = result.group.has_group(table) && result.group.group(table).has_dataset("knudsen");
+    return known ? result.group.group(table).reals("knudsen").at(k) : io::no_value;
+  };
+  io::BriefTable places{"Under the load", {{"speed", unit}, {"x", "m"}, {"y", "m"}, {"|e|/c", "1"}}, {}, {}};
+  io::BriefTable curves{"Over the eccentricity", {{"speed", unit}, {"|e|/c", "1"}}, {}, {}};
   for (io::BriefTable* table : {&places, &curves})
     table->columns.insert(table->columns.end(), numbers.begin(), numbers.end());
+  std::size_t of_equilibria = 0, of_curves = 0;
   for (const deck::Quantity& speed : options.speeds) {
     const io::Quantity shown{deck::from_si(speed.value, speed.unit), speed.unit};
     const std::string head = fmt::format("equilibrium.speed.{:.6g}.", speed.value);
     if (v.get(head + "load"))
-      places.rows.push_back(row_of({shown, v[head + "x"], v[head + "y"], v[head + "eccentricity"]}, head));
+      places.rows.push_back(row_of({shown, v[head + "x"], v[head + "y"], v[head + "eccentricity"]}, head,
+                                   knudsen_of("equilibria", of_equilibria)));
+    ++of_equilibria;
     for (const double e : options.eccentricities) {
       const std::string here = fmt::format("speed.{:.6g}.eccentricity.{:.6g}.", speed.value, e);
-      if (v.get(here + "load")) curves.rows.push_back(row_of({shown, io::Quantity{e, "1"}}, here));
+      if (v.get(here + "load"))
+        curves.rows.push_back(row_of({shown, io::Quantity{e, "1"}}, here, knudsen_of("curves", of_curves)));
+      ++of_curves;
     }
   }
+  (curves.rows.empty() ? places : curves).note =
+      std::string(supplied ? "normal flow: of the gas at 0 degC and 101325 Pa; " : "") +
+      "attitude: from the load to the journal, with the rotation; Knudsen number: where the film is thinnest";
   brief.tables = {std::move(places), std::move(curves)};
   const io::Group& all = result.group;
   if (all.has_group("meshes")) {
@@ -46,7 +64,7 @@ io::Brief GasBearing::brief(const StudyResult& result, std::span<const io::Study
     io::BriefTable table{"Load over the mesh",
                          {{"cells"}, {"source at the rim", "N"}, {"source in a node", "N"}},
                          {},
-                         "a source in a node has no limit on ever finer meshes"};
+                         "with a source in a node the load does not converge"};
     for (std::size_t k = 0; k < rim.size(); ++k)
       table.rows.push_back(
           {fmt::format("{:.0f} x {:.0f}", around[k], along[k]), io::Quantity{rim[k], "N"}, io::Quantity{node[k], "N"}});

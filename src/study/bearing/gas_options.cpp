@@ -60,13 +60,15 @@ void GasBearing::validate(const system::Machine& machine, const deck::Report& re
     report.fail("map", "a map needs clearances and diameters");
   const int least = 1 << std::max(options.meshes - 1, 0);
   if (options.meshes > 1 && (gas->cells[0] / least < 4 || gas->cells[1] / least < 2))
-    return report.fail("meshes", "the coarsest of so many meshes has less than 4 x 2 cells");
+    return report.fail(
+        "meshes",
+        "the coarsest of these meshes has less than 4 x 2 cells: give the film more cells or ask for fewer meshes");
   if (options.meshes <= 1 || !machine.bearings[*found].geometry) return;
   film::Gas coarsest = *gas;
   for (int& n : coarsest.cells) n /= least;
   const film::Misplaced orifice = film::facts_of(coarsest, *machine.bearings[*found].geometry).misplaced;
   if (!orifice.option.empty())
-    report.fail("meshes", fmt::format("the coarsest of so many meshes does not do: {}", orifice.reason));
+    report.fail("meshes", fmt::format("the coarsest of these meshes is too coarse: {}", orifice.reason));
 }
 
 }  // namespace whirl::study

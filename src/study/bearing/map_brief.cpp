@@ -17,6 +17,14 @@ std::vector<std::size_t> shown_of(std::size_t count) {
   return out;
 }
 
+// A value of a table with the bar that stands beside it.
+io::Quantity with_bar_of(const io::Group& g, const std::string& name, std::size_t row, const char* unit) {
+  io::Quantity q{g.reals(name)[row], unit};
+  const std::string bar = name + "_uncertainty";
+  if (g.has_dataset(bar) && g.reals(bar)[row] > 0) q.more["uncertainty"] = g.reals(bar)[row];
+  return q;
+}
+
 }  // namespace
 
 io::Brief BearingMap::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
@@ -43,11 +51,10 @@ io::Brief BearingMap::brief(const StudyResult& result, std::span<const io::Study
   // Ten of the points, the last one with them.
   if (result.group.has_group("locus")) {
     const io::Group& g = result.group.group("locus");
-    const auto s = g.reals("sommerfeld"), e = g.reals("eccentricity"), a = g.reals("attitude"),
-               limit = g.reals("speed_limit"), ratio = g.reals("whirl_ratio");
-    for (const std::size_t k : shown_of(e.size()))
-      locus.rows.push_back({io::Quantity{s[k], "1"}, io::Quantity{e[k], "1"}, io::Quantity{a[k], "rad"},
-                            io::Quantity{limit[k], "1"}, io::Quantity{ratio[k], "1"}});
+    for (const std::size_t k : shown_of(g.reals("eccentricity").size()))
+      locus.rows.push_back({with_bar_of(g, "sommerfeld", k, "1"), with_bar_of(g, "eccentricity", k, "1"),
+                            with_bar_of(g, "attitude", k, "rad"), with_bar_of(g, "speed_limit", k, "1"),
+                            with_bar_of(g, "whirl_ratio", k, "1")});
   }
   io::BriefTable coefficients{"Stiffness and damping along the locus, nondimensional",
                               {{"|e|/c", "1"}},
@@ -63,8 +70,7 @@ io::Brief BearingMap::brief(const StudyResult& result, std::span<const io::Study
       auto& row = coefficients.rows.emplace_back();
       row.emplace_back(io::Quantity{e[k], "1"});
       for (const char* letter : {"k", "c"})
-        for (const char* pair : pairs)
-          row.emplace_back(io::Quantity{g.reals(fmt::format("{}_{}", letter, pair))[k], "1"});
+        for (const char* pair : pairs) row.emplace_back(with_bar_of(g, fmt::format("{}_{}", letter, pair), k, "1"));
     }
   }
   brief.tables = {std::move(loads), std::move(locus), std::move(coefficients)};

@@ -193,6 +193,14 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
                                        in_words(most)));
 }
 
+// e/c of its parts, with the bar that theirs leave it.
+io::Quantity eccentricity_of(const io::Quantity& x, const io::Quantity& y) {
+  io::Quantity e{std::hypot(x.value, y.value), "1"};
+  const double bar = (std::abs(x.value) * x.bar() + std::abs(y.value) * y.bar()) / e.value;
+  if (bar > 0) e.more["uncertainty"] = bar;
+  return e;
+}
+
 // "thinnest film 36.90 +- 0.16 um in B1, largest load 213.4 kN on B3, power loss 241 kW".
 std::string extremes(const Values& v) {
   std::string words;
@@ -205,7 +213,7 @@ std::string extremes(const Values& v) {
       std::ranges::min_element(films, {}, [&](const auto& b) { return v["bearing." + b + ".min_thickness"].value; });
   const auto load = std::ranges::max_element(loads, {}, [&](const auto& b) { return v["load." + b].value; });
   if (film != films.end()) say("thinnest film", v["bearing." + *film + ".min_thickness"], " in " + *film);
-  if (load != loads.end()) say("largest load", v["load." + *load], " on " + *load);
+  if (load != loads.end() && v["load." + *load].value > 0) say("largest load", v["load." + *load], " on " + *load);
   if (const auto loss = v.get("power_loss"); loss && *loss > 0) say("power loss", v["power_loss"], "");
   return words;
 }
@@ -348,24 +356,31 @@ io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySumm
        {"largest pressure", "Pa"},
        {"highest temperature", "degC"},
        {"side flow", "m^3/s"},
+       {"flow", "kg/s"},
+       {"normal flow", "l/min"},
        {"power loss", "W"}},
       {},
-      "load of the journal on the bearing, positive down; place of the journal relative to the "
-      "bearing centre; c: assembled clearance"};
+      "load of the journal on the bearing, positive down; place of the journal relative to the bearing centre"};
   io::BriefTable matrices{"Stiffness K and damping C of the films",
                           {{"bearing"}},
                           {},
-                          "K = -dF/dx, C = -dF/d(dx/dt) of the force on the journal"};
+                          "K = -dF/dx, C = -dF/d(dx/dt) of the force on the journal; where they depend on the "
+                          "frequency, at that of the speed"};
   for (const char* letter : {"K", "C"})
     for (const char* pair : {"xx", "xy", "yx", "yy"})
       matrices.columns.push_back({std::string(letter) + " " + pair, *letter == 'K' ? "N/m" : "N s/m"});
+  bool has_gas = false;
   for (const std::string& b : v.between("load.", "")) {
     const std::string head = "bearing." + b + ".";
     const io::Quantity x = v[head + "eccentricity.x"], y = v[head + "eccentricity.y"];
-    places.rows.push_back({b, v["load." + b], v[head + "x"], v[head + "y"],
-                           io::Quantity{std::hypot(x.value, y.value), "1"}, v[head + "min_thickness"],
-                           v[head + "max_pressure"], in_celsius(v[head + "max_temperature"]), v[head + "side_flow"],
-                           v[head + "power_loss"]});
+    const io::Quantity gas = v[head + "mass_flow"];
+    const bool liquid =
+        std::isnan(gas.value);  // a gas film has one temperature, and its volumes depend on the pressure
+    has_gas = has_gas || !liquid;
+    places.rows.push_back(
+        {b, v["load." + b], v[head + "x"], v[head + "y"], eccentricity_of(x, y), v[head + "min_thickness"],
+         v[head + "max_pressure"], liquid ? in_celsius(v[head + "max_temperature"]) : io::BriefCell(),
+         liquid ? v[head + "side_flow"] : io::BriefCell(), gas, v[head + "normal_flow"], v[head + "power_loss"]});
     auto& row = matrices.rows.emplace_back();
     row.emplace_back(b);
     for (const char* letter : {"K.", "C."})
@@ -375,6 +390,8 @@ io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySumm
                           {{"element"}, {"force x", "N"}, {"force y", "N"}, {"x", "m"}, {"y", "m"}},
                           {},
                           "force of the shaft on the element; motion of its node, relative to its other end"};
+  if (!v.between("bearing.", ".eccentricity.x").empty()) places.note += "; c: assembled clearance";
+  if (has_gas) places.note += "; normal: at 0 degC and 101325 Pa";
   double total = 0;
   for (const std::string& b : v.between("load.", "")) total += std::abs(v["load." + b].value);
   for (const std::string& e : v.between("element.", ".force.x")) {

@@ -276,7 +276,17 @@ std::string kind_in_words(const std::string& kind, const Values& v) {
   return "The motion is " + kind;
 }
 
-io::BriefTable table_of_places(const Values& v) {
+// Of the last `count` samples of a place.
+io::Quantity mean_of(const io::Group& orbit, const std::string& axis, std::size_t place, std::size_t places,
+                     std::size_t count, const std::string& unit) {
+  const auto& all = orbit.reals(axis);
+  const std::size_t rows = all.size() / places, n = std::min(count, rows);
+  double sum = 0;
+  for (std::size_t k = rows - n; k < rows; ++k) sum += all[k * places + place];
+  return {sum / static_cast<double>(n), unit};
+}
+
+io::BriefTable table_of_places(const Values& v, const io::Group& group, int samples) {
   const std::vector<std::string> places = v.between("peak_to_peak.", ".x");
   // At rest there are no tones.
   if (places.empty() || v.between("tone.", ".frequency").empty()) return {};
@@ -285,15 +295,24 @@ io::BriefTable table_of_places(const Values& v) {
                        {{"place"},
                         {"x", length},
                         {"y", length},
+                        {"mean x", length},
+                        {"mean y", length},
                         {"strongest tone in y", "Hz"},
                         {"per revolution", "1"},
                         {"its amplitude", length}},
                        {},
-                       {}};
+                       "mean: over the last revolution"};
+  const bool known = group.has_group("orbit") && group.group("orbit").has_dataset("x") &&
+                     group.group("orbit").reals("x").size() >= places.size();
+  const auto mean = [&](const char* axis) {
+    return known ? mean_of(group.group("orbit"), axis, table.rows.size(), places.size(),
+                           static_cast<std::size_t>(samples), length)
+                 : io::Quantity{};
+  };
   for (const std::string& p : places) {
     const std::string tone = "tone." + p + ".y.1.";
-    table.rows.push_back({p, v["peak_to_peak." + p + ".x"], v["peak_to_peak." + p + ".y"], v[tone + "frequency"],
-                          v[tone + "order"], v[tone + "amplitude"]});
+    table.rows.push_back({p, v["peak_to_peak." + p + ".x"], v["peak_to_peak." + p + ".y"], mean("x"), mean("y"),
+                          v[tone + "frequency"], v[tone + "order"], v[tone + "amplitude"]});
   }
   return table;
 }
@@ -323,7 +342,7 @@ StudyResult Motion::run(Context& context) {
 
 io::Brief Motion::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
   const Values v(result.summary);
-  io::Brief brief{{}, {table_of_places(v), table_of_exponents(v)}};
+  io::Brief brief{{}, {table_of_places(v, result.group, options.samples), table_of_exponents(v)}};
   for (const std::string& kind : v.between("motion.", ""))
     // What has not settled has its evidence among the warnings.
     brief.sentences.push_back(kind == "unsettled"

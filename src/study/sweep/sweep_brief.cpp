@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -29,7 +30,7 @@ bool answers(const std::string& value) {
   static const std::regex main(
       R"((^|.*\.)(threshold|whirl_frequency|contact|(hopf|fold|cyclic_fold|flip|neimark_sacker|branch_point)\.\d+|)"
       R"(critical\.\d+\.speed|load\.[^.]+|min_thickness|multiplier\.modulus|peak_to_peak\.[^.]+\.[xy]|)"
-      R"(first_forward\.(frequency|log_decrement))|peak\.[1-3]\.(speed|semi_major|amplification_factor))");
+      R"(first_forward\.(frequency|log_decrement))|speed\.[0-9.]+\.(eccentricity|ratio\.1\.[KC]\.(xx|yy))|peak\.[1-3]\.(speed|semi_major|amplification_factor))");
   return std::regex_match(value, main);
 }
 
@@ -48,18 +49,29 @@ struct Shown {
 
 // The name of a value as few words.
 std::string in_short(std::string value) {
-  for (char& c : value)
-    if (c == '.' || c == '_') c = ' ';
+  // Of a film by itself: the number is a speed, and 1 the frequency over it.
+  static const std::regex of_speed(R"(speed\.([0-9.]+)\.(?:ratio\.1\.)?(.*))");
+  std::string speed;
+  if (std::smatch found; std::regex_match(value, found, of_speed)) {
+    speed = " at speed " + found[1].str();
+    value = found[2].str();
+  }
+  const auto digit = [&](std::size_t k) {
+    return k < value.size() && std::isdigit(static_cast<unsigned char>(value[k]));
+  };
+  for (std::size_t k = 0; k < value.size(); ++k)
+    if (value[k] == '_' || (value[k] == '.' && !(k > 0 && digit(k - 1) && digit(k + 1)))) value[k] = ' ';
   for (const auto& [words, brief] : {std::pair{"amplification factor", "AF"},
                                      {"semi major", "0-peak"},
                                      {"peak to peak", "p-p"},
                                      {"first forward", "forward"},
                                      {"min thickness", "thinnest film"},
+                                     {"eccentricity", "|e|/c"},
                                      {"log decrement", "log dec."}})
     if (const std::size_t at = value.find(words); at != std::string::npos)
       value.replace(at, std::string_view(words).size(), brief);
   if (value.starts_with("bearing ")) value.erase(0, std::string_view("bearing ").size());
-  return value;
+  return value + speed;
 }
 
 class SweepBrief {
