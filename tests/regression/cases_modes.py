@@ -333,7 +333,7 @@ def many(h):
     h.close("    a small one, of the first [rad/s]", s["modes"][0]["imag_uncertainty"], 0, 0.01)
     h.true("    no bars of some", not all(known) and sum(known) > 100, str(sum(known)))
     first = 1 + known.index(False)
-    h.true("    which are named", warned(s, f"no error bars of modes {first}", "cut in two"), str(s.get("warnings")))
+    h.true("    which are named", warned(s, "no error bars of mode", f" {first}", "cut in two"), str(s.get("warnings")))
     s = h.run(deck, "none", [*cut[:3], "studies=[{modes: {name: m, speeds: [0 rad/s], count: 6}}]"], flags=["--", "-modes_eps_ncv", "110", "-modes_eps_max_it", "1", "-modes_eps_tol", "1e-15"], launcher=[], bars=True)["m"]
     h.true("a search without an answer", warned(s, "no error bars of modes 1 to 6", "gave no modes", "converged"), str(s.get("warnings")))
 

@@ -18,8 +18,9 @@ namespace {
 
 constexpr double rpm = std::numbers::pi / 30;
 
-io::Brief brief_of(const Study& study, io::StudySummary summary, bool delivered = true) {
+io::Brief brief_of(const Study& study, io::StudySummary summary, bool delivered = true, io::Group group = {}) {
   StudyResult result;
+  result.group = std::move(group);
   result.summary = std::move(summary);
   result.delivered = delivered;
   io::Brief brief = study.brief(result, {});
@@ -144,6 +145,20 @@ TEST(ResponseBrief, NamesTheLargestPeakThatIsAMotion) {
   io::StudySummary s;
   s.points = 10;
   EXPECT_EQ(brief_of(study, s).sentences, std::vector<std::string>{"no peak from 500 to 6000 rpm"});
+  // Without a peak the largest amplitude of a motion: not the last one, about an unstable equilibrium.
+  io::Group group;
+  io::Group& response = group.child("response");
+  response.put("speed", {100 * rpm, 200 * rpm, 300 * rpm}, "rad/s", "");
+  response.put("node", std::vector<std::int64_t>{3, 7}, "");
+  response.put("semi_major", io::Shape{3, 2}, {1e-6, 2e-6, 3e-6, 4e-6, 5e-6, 6e-6}, "m", "");
+  response.put("answer", std::vector<std::int64_t>{1, 1, 1}, "");
+  response.put("unstable_count", std::vector<std::int64_t>{0, 0, 2}, "");
+  s.set("unbalance.g63.mass", 196.66, "kg");
+  s.set("unbalance.g63.plane.1", 1.2e-3, "kg m");
+  s.set("unbalance.g63.plane.2", 1.1e-3, "kg m");
+  EXPECT_EQ(brief_of(study, s, true, group).sentences,
+            (std::vector<std::string>{"no peak from 500 to 6000 rpm", "at most 4 um at node 7, 200 rpm",
+                                      "unbalance g63: 2.3 kg mm in all planes, by its grade for a mass of 196.66 kg"}));
   s.peaks = {peak("node 4", 3094, 23.4e-6, "stable"), peak("node 4", 5000, 9e-5, "unstable"),
              peak("B1, journal", 3094, 5e-5, "stable")};
   s.peaks[1].notes = {"no amplification factor: the range ends"};

@@ -66,7 +66,7 @@ TEST(ResponsePeaks, AGapIsAnEndOfTheCurve) {
   ASSERT_EQ(c.tops().size(), 1U);
   const Peak p = peak_at(c, c.tops().front());
   EXPECT_TRUE(std::isnan(p.amplification));
-  EXPECT_EQ(p.no_factor, "the response does not fall to 0.707 of the peak above it before the answers end");
+  EXPECT_EQ(p.no_factor, "above the peak the response does not fall to 0.707 of it before the answers end");
 }
 
 TEST(ResponsePeaks, WhatWasNotRefinedIsUnknown) {
@@ -124,7 +124,9 @@ TEST(ResponsePeaks, WhyThereIsNoFactorIsSaid) {
   ASSERT_EQ(tops.size(), 2U);
   const Peak low = peak_at(c, tops[0]), high = peak_at(c, tops[1]);
   EXPECT_TRUE(std::isnan(low.amplification));
-  EXPECT_NE(low.no_factor.find("above it before a higher peak rises"), std::string::npos) << low.no_factor;
+  EXPECT_NE(low.no_factor.find("above the peak the response does not fall to 0.707 of it before a higher peak rises"),
+            std::string::npos)
+      << low.no_factor;
   EXPECT_GT(high.amplification, 1);
   EXPECT_TRUE(high.no_factor.empty());
   ResponseCurve cut;

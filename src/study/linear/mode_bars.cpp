@@ -148,8 +148,9 @@ void ModeBars::tell(io::StudySummary& summary, const rotor::Options& rotor, cons
     if (any_ && !of_.contains(id)) without[at_no_speed].insert(id);
   for (const auto& [why, ids] : without)
     if (!ids.empty())
-      summary.warnings.push_back(fmt::format("no error bars of modes {}{}: {}", runs_of(ids),
-                                             several_ && why != at_no_speed ? " at some speeds" : "", why));
+      summary.warnings.push_back(fmt::format("no error bars of mode{} {}{}: {}", ids.size() > 1 ? "s" : "",
+                                             runs_of(ids), several_ && why != at_no_speed ? " at some speeds" : "",
+                                             why));
   put_shaft_error(summary, rotor, shaft_error_);
 }
 

@@ -46,7 +46,7 @@ std::array<std::optional<Side>, 2> sides_of(const ResponseCurve& curve, std::siz
     if (!(value(outer) <= level)) {
       if (reason && reason->empty())
         *reason =
-            fmt::format("the response does not fall to 0.707 of the peak {} it before {}", s == 0 ? "below" : "above",
+            fmt::format("{} the peak the response does not fall to 0.707 of it before {}", s == 0 ? "below" : "above",
                         value(outer) > higher      ? "a higher peak rises"
                         : std::isnan(value(outer)) ? "the answers end"
                         : s == 0                   ? "the range begins"

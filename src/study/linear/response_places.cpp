@@ -50,7 +50,7 @@ std::string unsettled(const ResponseCurve& curve, std::size_t top, const Peak& p
              width = std::isfinite(peak.amplification) && std::isnan(peak.errors.factor);
   if (!std::isfinite(peak.height) || (!place && !width)) return {};
   return fmt::format("{} not settled: the speeds computed beside it are {:.6g} and {:.6g} {}{}",
-                     place ? "its place is" : "its width is", deck::from_si(curve.speed[top - 1], unit),
+                     place ? "its speed is" : "its width is", deck::from_si(curve.speed[top - 1], unit),
                      deck::from_si(curve.speed[top + 1], unit), unit, refined ? "" : " (refine: false)");
 }
 

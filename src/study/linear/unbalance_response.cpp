@@ -91,7 +91,7 @@ void put_stability(io::Group& group, io::StudySummary& summary, const std::vecto
            "missing");
   put_verdict(summary, stable, unit,
               "no vibration settles into the linear response there, and its peaks, amplification factors and margins "
-              "are those of no motion");
+              "describe no real motion");
   if (operating) summary.set("operating_speed.unstable_count", stable.at(operating->value), "1");
 }
 

@@ -137,6 +137,39 @@ std::vector<std::string> of_peaks(const std::vector<io::PeakEntry>& peaks, const
   return out;
 }
 
+// Of a range without a peak the largest amplitude at its nodes, at speeds where the linear response is a motion.
+std::string largest_amplitude(const io::Group& group, const std::string& unit) {
+  if (!group.has_group("response")) return {};
+  const io::Group& r = group.group("response");
+  if (!r.has_dataset("semi_major") || !r.has_dataset("answer")) return {};
+  const auto &speed = r.reals("speed"), &height = r.reals("semi_major");
+  const auto &node = r.integers("node"), &answer = r.integers("answer");
+  double most = 0;
+  std::string where;
+  for (std::size_t k = 0; k < speed.size(); ++k)
+    for (std::size_t n = 0; n < node.size(); ++n)
+      if (answer[k] > 0 && (!r.has_dataset("unstable_count") || r.integers("unstable_count")[k] == 0) &&
+          height[k * node.size() + n] > most) {
+        most = height[k * node.size() + n];
+        where = fmt::format("at most {} at node {}, {}", io::reading({most, "m"}), node[n],
+                            io::reading({deck::from_si(speed[k], unit), unit}));
+      }
+  return where;
+}
+
+// "unbalance g63: 2.366 kg mm, by its grade for a mass of 196.7 kg", of each that a grade gives.
+std::vector<std::string> of_grades(const Values& v) {
+  std::vector<std::string> out;
+  for (const std::string& name : v.between("unbalance.", ".mass")) {
+    double amount = 0;
+    for (const std::string& plane : v.between("unbalance." + name + ".plane.", ""))
+      amount += v["unbalance." + name + ".plane." + plane].value;
+    out.push_back(fmt::format("unbalance {}: {} in all planes, by its grade for a mass of {}", name,
+                              io::reading({amount, "kg m"}), io::reading(v["unbalance." + name + ".mass"])));
+  }
+  return out;
+}
+
 // Largest amplitude at the operating speed, and all of them.
 struct Operating {
   std::string sentence = {};
@@ -208,8 +241,10 @@ io::Brief UnbalanceResponse::brief(const StudyResult& result, std::span<const io
                    : std::isfinite(v["operating_speed"].value) ? io::reading(v["operating_speed"])
                                                                : "";
   Operating operating = at_operating_speed(v, at.empty() ? "the service speed" : "the operating speed, " + at);
+  if (s.peaks.empty() && operating.sentence.empty()) operating.sentence = largest_amplitude(result.group, unit);
   out.sentences.push_back(std::move(operating.sentence));
   out.tables.push_back(std::move(operating.table));
+  for (std::string& grade : of_grades(v)) out.sentences.push_back(std::move(grade));
   return out;
 }
 
