@@ -86,9 +86,8 @@ double knudsen_number(const system::Support& s, const film::Gas& gas, double thi
 
 std::string laminar_words(const film::Geometry& geometry, double speed) {
   return fmt::format(
-      "Reynolds number at {:.6g} rad/s ({:.6g} rpm) of a film that is computed as laminar; vortices or turbulence "
-      "begin "
-      "at {:.4g}: 'turbulence' of a film of type reynolds or thd counts it",
+      "Reynolds number at {:.6g} rad/s ({:.6g} rpm) of a film computed as laminar, but vortices or turbulence begin at "
+      "{:.4g}: films of type reynolds and thd have 'turbulence'",
       speed, speed * 30 / std::numbers::pi, laminar_limit(geometry));
 }
 

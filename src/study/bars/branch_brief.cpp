@@ -32,7 +32,12 @@ io::Quantity frequency_of(const io::Bifurcation& b) {
   constexpr double turn = 2 * std::numbers::pi;
   if (std::isfinite(omega)) return with_bar(omega / turn, bar / turn, "Hz");
   if (!(b.period_s > 0)) return {};
-  return {1 / (b.type == Type::flip ? 2 * b.period_s : b.period_s), "Hz"};
+  const double frequency = 1 / (b.type == Type::flip ? 2 * b.period_s : b.period_s);
+  if (b.parameter != "speed") return {frequency, "Hz"};
+  // Of a forced cycle, whose period is a number of turns of the shaft, it is as exact as the speed.
+  const double turns = deck::number_to_si(b.value, b.unit) * b.period_s / turn;
+  const bool forced = std::abs(turns - std::round(turns)) < 1e-6;
+  return with_bar(frequency, forced ? frequency * std::abs(b.uncertainty / b.value) : io::no_value, "Hz");
 }
 
 // Per speed of the shaft, where that is the parameter; nothing of a fold of vibration at the speed itself.
@@ -266,7 +271,7 @@ io::BriefTable table_of_bifurcations(const io::StudySummary& s) {
        {"error of the shaft's reduction", first.unit},
        {"what it means"}},
       {},
-      "bar: film mesh, time mesh and location; frequency: of what begins there (of a fold: the cycle)"};
+      "bar: film mesh, time mesh and location; frequency: of the motion that begins there (at a fold: of the cycle)"};
   for (const io::Bifurcation& b : s.bifurcations) {
     const bool side =
         (b.type == Type::fold || b.type == Type::cyclic_fold) && (b.criticality == "above" || b.criticality == "below");
