@@ -74,12 +74,15 @@ Largest largest_of(const Travel& t, bool stable_only) {
   return out;
 }
 
-void put_largest(io::Brief& brief, const io::Group& group, const std::string& word, const std::string& unit) {
+void put_largest(io::Brief& brief, bool doubtful, const io::Group& group, const std::string& word,
+                 const std::string& unit) {
   const std::vector<double>& stable = group.group("branch").reals("stable");
   const bool any = std::ranges::any_of(stable, [](double s) { return s > 0; });
+  // Where the mesh does not tell, a multiplier inside the unit circle is no proof.
+  const std::string cycles = doubtful ? "the cycles that are not known to be unstable" : "the stable cycles";
   const std::string length = group.group("branch").dataset("x_max").unit;
   io::BriefTable table{
-      any ? "Largest vibration of the stable cycles" : "Largest vibration of the cycles, none of which is stable",
+      any ? "Largest vibration of " + cycles : "Largest vibration of the cycles, none of which is stable",
       {{"place"}, {"x, 0-peak", length}, {word + " (x)", unit}, {"y, 0-peak", length}, {word + " (y)", unit}},
       {},
       "0-peak: half of the travel"};
@@ -97,9 +100,9 @@ void put_largest(io::Brief& brief, const io::Group& group, const std::string& wo
       }
   }
   if (any && top.half > 0)
-    brief.sentences.push_back(fmt::format(
-        "The largest vibration of the stable cycles is {} 0-peak {}, reached at {}{}.", io::reading({top.half, length}),
-        where, unit == "1" ? word + " " : "", io::reading({top.at, unit})));
+    brief.sentences.push_back(fmt::format("The largest vibration of {} is {} 0-peak {}, reached at {}{}.", cycles,
+                                          io::reading({top.half, length}), where, unit == "1" ? word + " " : "",
+                                          io::reading({top.at, unit})));
   brief.tables.push_back(std::move(table));
 }
 
@@ -189,7 +192,8 @@ io::Brief brief_of_cycles(const StudyResult& result, const CycleBranchOptions& o
     brief.sentences.push_back(fmt::format("The branch ends where it returns to {}.", end));
   io::BriefTable open = std::move(brief.tables.back());
   brief.tables.back() = at_asked(s, word, unit);
-  put_largest(brief, group, word, unit);
+  put_largest(brief, std::ranges::any_of(s.ranges, [](const auto& r) { return r.stability == "undetermined"; }), group,
+              word, unit);
   if (self_excited) brief.tables.push_back(safe_disturbance(s, group, word, unit));
   brief.tables.push_back(std::move(open));
   return brief;
