@@ -25,7 +25,7 @@ nav{margin:1em 0;padding:.6em .9em;background:#f3f6f9;border-radius:6px} nav a{d
 table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-align:left;font-weight:600;padding:.4em 0;font-size:1.05em} caption span{display:inline-block;white-space:nowrap}
 td.short{white-space:nowrap} td.long{min-width:14em}
 th,td{padding:.25em 1.1em .25em 0;text-align:left;border-bottom:1px solid var(--line);vertical-align:top} th{color:var(--grey);font-weight:600}
-td.name{white-space:nowrap} td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
+td.name{white-space:nowrap} td.n,th.n{text-align:right;font-variant-numeric:tabular-nums} td.n{white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
 img{max-width:100%;border:1px solid var(--line);border-radius:4px} details{margin:.7em 0} summary{cursor:pointer;color:var(--blue)}
 body{counter-reset:figures tables} figcaption::before{counter-increment:figures;content:"Figure " counter(figures) ". ";font-weight:600}
 caption span::before{counter-increment:tables;content:"Table " counter(tables) ". "}
