@@ -42,8 +42,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # the libraries that the program is linked with, by dpkg-shlibdeps
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, libopenblas0-pthread, python3, python3-numpy, python3-h5py, python3-matplotlib, python3-yaml")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libjs-chart.js")  # charts of the report; without it there are pictures
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, libopenblas0-pthread, python3, python3-numpy, python3-h5py, python3-matplotlib, python3-yaml, libjs-chart.js")
 if(WHIRL_NATIVE)
   # A program that is tuned for one processor does not run on an older one.
   set(CPACK_DEBIAN_PACKAGE_RELEASE native)

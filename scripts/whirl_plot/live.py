@@ -114,10 +114,15 @@ def library():
     return None
 
 
+def maker_of(study, what):
+    """The function that makes the chart in place of a picture, `module.name`; None if there is none."""
+    kind = "transfer" if getattr(study, "kind", "") == "frequency_response" else what if what in CHARTS else re.sub(r"-?\d+$", "", what)
+    return "live_sweep.sweep" if getattr(study, "kind", "") == "sweep" else CHARTS.get(kind)
+
+
 def chart_of(study, what):
     """The chart in place of a picture as HTML; empty if there is none, or the library is not installed."""
-    kind = "transfer" if getattr(study, "kind", "") == "frequency_response" else what if what in CHARTS else re.sub(r"-?\d+$", "", what)
-    made_by = "live_sweep.sweep" if getattr(study, "kind", "") == "sweep" else CHARTS.get(kind)
+    made_by = maker_of(study, what)
     if made_by is None or library() is None:
         return ""
     module, name = made_by.split(".")

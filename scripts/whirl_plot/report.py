@@ -132,9 +132,14 @@ def caption(what, subject=None):
     return f"{kind.replace('-', ' ').capitalize()}."
 
 
+def what_of(path, subject):
+    """What a picture shows: its name without that of its study."""
+    return path.stem.removeprefix(subject.file("").name) if hasattr(subject, "kind") else path.stem
+
+
 def picture(path, subject=None):
     """A picture; of a study, or of the run, with the chart that takes its place on a screen, where there is one."""
-    what = path.stem.removeprefix(subject.file("").name) if hasattr(subject, "kind") else path.stem
+    what = what_of(path, subject)
     chart = live.chart_of(subject, what) if subject is not None else ""
     data = base64.b64encode(path.read_bytes()).decode("ascii")
     return f"<figure>{chart}<div class=scroll><img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'></div><figcaption title='{escape(path.name)}'>{escape(caption(what, subject))}</figcaption></figure>"
@@ -318,6 +323,8 @@ def main(argv):
                 pass
         target = register(directory / "report.html")
         target.write_text(page_of(results), encoding="utf-8")
+        if live.library() is None and any(live.maker_of(study, what_of(p, study)) for study, pictures in pictures_of(results)[0] for p in pictures):
+            print("report: the page has pictures in place of charts; for charts install Debian's libjs-chart.js and write it again", file=sys.stderr)
     print(target)
     return 0
 
