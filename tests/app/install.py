@@ -43,6 +43,9 @@ with tempfile.TemporaryDirectory() as name:
     check("the front page is there", (prefix / "share/doc/whirl/README.md").is_file())
     check("the tutorial is there", (prefix / "share/doc/whirl/docs/tutorial/README.md").is_file())
 
+    done = run(sys.executable, source / "tests/static/links.py", prefix / "share/doc/whirl")
+    check("the links of the installed pages", done.returncode == 0, done.stdout)
+
     deck = prefix / "share/whirl/inputs/tutorial/2_unbalance.yaml"
     example = f"""
 import importlib.metadata, sys
