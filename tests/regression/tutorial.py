@@ -161,6 +161,12 @@ def check(h, pages, runs):
         pages.states(page, "3767 +- 3 rpm", threshold(fan), "threshold", 1)
         pages.states(page, "6399 rpm", threshold(runs["lemon"]), "threshold in lemon bores", 3)
         pages.states(page, "38.6 µm", runs["lemon"].values("response")["operating.node.1.semi_major"].value * 1e6, "vibration in lemon bores", 0.1)
+    v |= {k: q.value for k, q in fan.values("Campbell").items()}
+    for page in ("6_own_machine", "README"):
+        pages.states(page, "3560 rpm", v["critical.1.speed"], "critical speed", 0.5)
+        pages.states(page, "18.7 %", v["critical.1.separation_margin"] * 100, "margin of the critical speed")
+        pages.states(page, "25.6 %", v["critical.1.required_margin"] * 100, "required margin")
+    pages.states("6_own_machine", "13.6", v["critical.1.amplification_factor"], "amplification factor")
     pages.states("6_own_machine", "109.9 kg", v["mass.total"], "mass")
     q = fan.values("threshold")
     pages.states("6_own_machine", "0.500 of the speed", q["whirl_frequency"].value / q["threshold"].value, "whirl ratio")
@@ -168,7 +174,10 @@ def check(h, pages, runs):
     whirl = runs["6_own_whirl"]
     pages.states("6_own_machine", "6394 rpm", bifurcation(whirl, "whirl", "hopf")["value"], "Hopf point on the coarse film")
     pages.states("6_own_machine", "6124 rpm", bifurcation(whirl, "whirl", "cyclic_fold")["value"], "fold on the coarse film", 1)
-    pages.states("6_own_machine", "0.98", whirl.table("whirl")["eccentricity_max"][-1].max(), "eccentricity at the end")
+    end = whirl.table("whirl")
+    pages.states("6_own_machine", "0.98", end["eccentricity_max"][-1].max(), "eccentricity at the end")
+    pages.states("6_own_machine", "78 µm", end["x_max"][-1].max() * 1e6, "place of the journal at the end")
+    pages.states("6_own_machine", "30 µm", end["film_min"][-1].min() * 1e6, "thinnest film at the end")
 
 
 def examples(h, pages):
