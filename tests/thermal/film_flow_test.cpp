@@ -237,7 +237,7 @@ TEST(FilmFlow, FindsWhereItRupturesFromCold) {
 }
 
 TEST(Orifice, ChokesAndFlowsBack) {
-  const Gas air;
+  const PerfectGas air;
   EXPECT_EQ(nozzle(air, 5e5, 300, 1e5).value, nozzle(air, 5e5, 300, 2e5).value);
   // Choked air: 0.0404 sqrt(K s^2/m^2) p/sqrt(T).
   EXPECT_NEAR(nozzle(air, 5e5, 300, 1e5).value, 0.6847 * 5e5 / std::sqrt(286.7 * 300), 1e-3 * 1167);
