@@ -173,7 +173,7 @@ def missing(h):
     h.close("    the least damped", value(s["m"], "at.3000.least_damped.log_decrement"), growing[0]["log_decrement"], 0)
     h.close("    threshold over the speed [rad/s]", value(s["over"], "threshold"), 1466.98, 0.01)
     h.close("    of a mode outside the list [rad/s]", value(s["beyond"], "threshold"), 1466.98, 0.01)
-    h.true("    which is in the words", warned(s["beyond"], "unstable: 1466.9") and not warned(s["beyond"], "from the start"), str(s["beyond"]["warnings"]))
+    h.true("    which is in the words", warned(s["beyond"], "unstable: from 1466.9") and not warned(s["beyond"], "from the start"), str(s["beyond"]["warnings"]))
     service = {f["what"]: f for f in json.loads((h.work / "internal" / "summary.json").read_text())["service_speed"]["facts"]}
     h.true("    stable between speeds of different fate", service["stability"]["mark"] == "stable", str(service["stability"]))
     h.close("    the margin of the service speed [%]", service["margin in speed to the threshold of stability"]["value"], 100 * (1466.98 / 1300 - 1), 0.001)
@@ -182,7 +182,7 @@ def missing(h):
            any(m["speed"] == 1300 and m["log_decrement"] == decrement["value"] for m in s["over"]["modes"]), str(decrement))
     h.close("    up to the end", value(s["over"], "unstable.1.to"), 3000, 1e-9)
     h.close("    its number", value(s["over"], "unstable.1.mode"), next(m["mode"] for m in s["over"]["modes"] if m["stability"] == "unstable"), 0)
-    h.true("    both warn", warned(s["m"], "unstable", "forward") and warned(s["over"], "unstable", "forward", "to 3000"))
+    h.true("    both warn", warned(s["m"], "unstable", "forward") and warned(s["over"], "unstable", "forward", "to the end of the range, 3000"))
 
 
     # Two speeds between which the shape of a mode changes until it is not known again: the critical speed is that of 25 speeds and of the map.
