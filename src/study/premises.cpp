@@ -11,6 +11,7 @@
 #include "sense.hpp"
 #include "study/bearing/thd_study.hpp"
 #include "study/linear/unbalance_response.hpp"
+#include "whirl/rotor/shaft.hpp"
 
 namespace whirl::study {
 
@@ -62,12 +63,37 @@ void judge_films(StudyResult& result, const system::Machine& machine, const Stud
   warn_of_films(result.summary, system::train_of(machine), asked);
 }
 
+// Proportions of a bearing that no usual machine has: a wrong unit is likely.
+void judge_bearing(const system::Machine& machine, const system::Bearing& bearing, std::vector<std::string>& lines) {
+  if (!bearing.geometry || !(bearing.geometry->radius > 0)) return;
+  constexpr double least_clearance = 1e-4, most_clearance = 1e-2, longest = 3;
+  const film::Geometry& g = *bearing.geometry;
+  const auto ask = [&](const std::string& what) {
+    lines.push_back(fmt::format("bearing {}: {}: is a unit wrong?", bearing.name, what));
+  };
+  if (const double part = g.clearance / g.radius; part < least_clearance || part > most_clearance)
+    ask(fmt::format("a clearance of {:.4g} um on a radius of {:.4g} mm is {:.3g} per mille of it, usual are 0.2 to 5",
+                    g.clearance * 1e6, g.radius * 1e3, part * 1e3));
+  if (const double ratio = g.length / (2 * g.radius); ratio > longest)
+    ask(fmt::format("a length of {:.4g} mm is {:.3g} diameters, usual are 0.2 to 1.5", g.length * 1e3, ratio));
+  const auto& segments = machine.rotor.segments;
+  if (bearing.node < 1 || static_cast<std::size_t>(bearing.node) > segments.size() + 1) return;
+  double shaft = 0;  // diameter of the thicker segment beside the node
+  const auto left = static_cast<std::size_t>(bearing.node) - 1;
+  if (left > 0) shaft = rotor::section_at(segments[left - 1], 1).outer_mass_diameter;
+  if (left < segments.size()) shaft = std::max(shaft, rotor::section_at(segments[left], 0).outer_mass_diameter);
+  if (const double bore = 2 * g.radius; shaft > 2 * bore || (shaft > 0 && shaft < bore / 2))
+    ask(fmt::format("a shaft of {:.4g} mm at its node in a bore of {:.4g} mm", shaft * 1e3, bore * 1e3));
+}
+
 }  // namespace
 
 std::vector<std::string> machine_warnings(const system::Machine& machine) {
   std::vector<std::string> lines;
   if (const double up = system::is_rotor(machine) ? system::lateral(machine.gravity)[1] : 0; up > 0)
     lines.push_back(fmt::format("gravity is {:.6g} m/s^2 along +y: the weight points upwards", up));
+  if (system::is_rotor(machine))
+    for (const system::Bearing& b : machine.bearings) judge_bearing(machine, b, lines);
   for (const system::Unbalance& u : machine.unbalance) {
     if (!u.grade) continue;
     double sum = 0;

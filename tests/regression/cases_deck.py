@@ -77,6 +77,12 @@ def signs(h):
         h.true("the row of the table says the value", list(column[:]) == [-20, 0, 20] and column.attrs["unit"] == "um", list(column[:]))
     told = say(h, "check", deck, "--set", "gravity=-9.81 m/s^2")
     h.true("gravity with a sign is that value", "set gravity: -9.81 m/s^2, was 9.81 m/s^2" in told and "points upwards" in told, told)
+    # Proportions that no usual bearing has: a wrong unit is likely.
+    own = h.source / "inputs/tutorial/6_own_machine.yaml"
+    for key, text, words in (("clearance", "800 um", "20 per mille"), ("clearance", "8 nm", "0.0002 per mille"), ("length", "500 mm", "6.25 diameters"),
+                             ("diameter", "400 mm", "a shaft of 80 mm at its node in a bore of 400 mm"), ("clearance", "80 um", None)):
+        told = say(h, "check", own, "--set", f"bearings.*.geometry.{key}={text}")
+        h.true(f"a bearing with a {key} of {text}", words in told if words else "unit wrong" not in told, told)
     here = "bearings.left.elevation"
     for text, after in (("by -20 um", "30 um"), ("by +20 um", "70 um"), ("x1.2", "60 um"), ("+20 %", "60 um"), ("-20 %", "40 um"),
                         ("=-20 um", "-20 um"), ("=+20 um", "20 um")):
