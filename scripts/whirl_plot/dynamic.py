@@ -52,7 +52,7 @@ def draw(study):
     ratio, speed = study.get("coefficients/ratio"), study.get("coefficients/speed")
     files = []
     for what, pairs in blocks_of(study):
-        if len(ratio) > (2 if len(speed) > 1 else 1):  # two frequencies are no course; those of several speeds stand over the speed
+        if len(ratio) > (2 if len(speed) > 1 else 1):  # fewer make no curve; those of several speeds are drawn over the speed
             colours = [INK] if len(speed) == 1 else list(plt.cm.viridis(np.linspace(0, 0.9, len(speed))))
             files += draw_block(study, what, pairs, ratio, 1, r"frequency $\omega/\Omega$", range(len(speed)), colours,
                                 [f"{s:.6g} rad/s" for s in speed])

@@ -39,7 +39,7 @@
         select.onchange = () => { this.option = +select.value; this.whole(); this.refresh(); };
       } else if (choose && choose.of.length) make('span', bar, {className: 'style'}, choose.of[0]);
       const names = new Map();
-      // Buttons of curves stand before those of marks. If any stretch of a curve is solid, its button shows a solid line.
+      // First the buttons of curves, then those of marks. A curve with a solid stretch has a button with a solid line.
       for (const marked of [false, true]) {
         for (const line of this.data.lines) if (line.n && !(line.m || line.dots) === !marked && (!names.has(line.n) || names.get(line.n).d && !line.d)) names.set(line.n, line);
       }
@@ -185,7 +185,7 @@
       });
     }
 
-    // Sets the limits of the axes: those of the zoom, or else those of the panel. A panel with equal scales without a zoom shows all curves.
+    // The axes end where the zoom ends, without a zoom where the panel does. A panel with equal scales then shows all curves.
     fit(chart) {
       const {panel, zoom} = chart.whirl, {x, y} = chart.options.scales;
       if (panel.equal) {

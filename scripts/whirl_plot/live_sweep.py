@@ -11,7 +11,7 @@ from .units import with_bar
 
 
 def sweep(study, what):
-    """The chart in place of a picture of a sweep: that of its own values, or that of a study of its variants by name."""
+    """The chart that replaces the picture `what` of a sweep: trends, coefficients, or a study of its variants by its name."""
     if what == "trends":
         return trends(study)
     if what in sweeps.COEFFICIENTS:

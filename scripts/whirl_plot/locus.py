@@ -212,7 +212,7 @@ def bars_of(study):
 
 
 def of_one_pair(results):
-    """The curves over the same pair of parameters, that of the first one."""
+    """The curves over the two parameters of the first curve."""
     studies = [s for s in results.studies if s.kind == "locus" and s.has("locus/parameter")]
     pair = lambda s: (s.attribute("parameter"), last(s.attribute("second", "")))  # noqa: E731
     return [s for s in studies if pair(s) == pair(studies[0])]

@@ -311,7 +311,8 @@ io::Brief Modes::brief(const StudyResult& result, std::span<const io::StudySumma
       out.sentences.push_back(fmt::format("no mode found grows for sure at any of the {} speeds", speeds.size()));
     if (speeds.size() > few) out.sentences.push_back(of_undamped(s));
     if (speeds.size() > 1) out.tables.push_back(over_speeds(v, speeds, s.modes.front().speed_unit));
-    out.sentences.push_back("Critical speeds are searched over a 'range', not between single 'speeds'.");
+    if (speeds.size() > 1)
+      out.sentences.emplace_back("Critical speeds are searched over a 'range', not between single 'speeds'.");
   }
   out.tables.push_back(last_modes(s, v));
   return out;

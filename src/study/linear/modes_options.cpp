@@ -59,7 +59,8 @@ void describe(deck::Description<ModesOptions>& d) {
       .only(&ModesOptions::motion, {ModesOptions::Motion::torsion, ModesOptions::Motion::axial});
   d.add("range", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
   d.add("points", &ModesOptions::points, deck::in(2, 1e8), "speeds in the range, evenly spaced with both ends");
-  d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range")
+  d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative,
+        "single speeds instead of a range; critical speeds are searched over a range only")
       .alias("speed");
   d.add("count", &ModesOptions::count, deck::in(1, 1e5),
         "modes at each speed, those of lowest frequency with a damping ratio below 0.9; modes that grow come on top");

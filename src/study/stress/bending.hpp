@@ -15,7 +15,8 @@ namespace whirl::study {
 ///
 ///     M(t) = still + forward exp(i Omega t) + backward exp(-i Omega t)
 ///
-/// To the shaft, which turns, `forward` stands still; `still` goes round once and `backward` twice in a revolution.
+/// Stress by elementary beam theory, M/W (Timoshenko, Strength of Materials, Part I). To the shaft, which turns,
+/// `forward` stands still; `still` goes round once and `backward` twice in a revolution.
 struct BendingAt {
   int node = 0;                                   ///< 1-based
   double z = 0;                                   ///< [m]

@@ -192,7 +192,7 @@ struct ResumePoint {
 /// What is met on the way along a branch.
 struct BranchItem {
   std::variant<BranchPoint, LocatedEvent, LocatedZero, Suspicion, ResumePoint> what;
-  Vec u = nullptr;        ///< the solution there; null for suspicions; that of a resume point may be rounded
+  Vec u = nullptr;        ///< the solution there, rounded at a resume point; null for a suspicion
   Vec tangent = nullptr;  ///< of resume points; may be changed
 };
 
