@@ -1,26 +1,11 @@
 #include "whirl/film/film.hpp"
 
-#include <complex>
 
 #include "film/steady.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/coefficients.hpp"
 
 namespace whirl::film {
-using Complex = std::complex<double>;
-
-void StatePreconditioner::apply_transposed(std::span<const double> /*r*/, std::span<double> /*x*/) {
-  core::require(false, "a preconditioner that is exact");
-}
-
-void StatePreconditioner::set_at(std::span<const double> /*d_states*/, std::span<const double> /*d_rates*/,
-                                 Complex /*lambda*/) {
-  core::require(false, "a preconditioner that is exact");
-}
-
-void StatePreconditioner::apply_at(std::span<const Complex> /*r*/, std::span<Complex> /*x*/) {
-  core::require(false, "a preconditioner that is exact");
-}
 
 std::span<const Port> Film::ports() const {
   return std::span(all_ports).first(2);

@@ -18,7 +18,7 @@ namespace whirl::film {
 /// first column behind the cut separates them: what lies before the first cut is eliminated up to it, what lies behind
 /// the last one back to it, both at the same time, and the columns at cuts are solved by all as one dense matrix.
 /// Cost: ColumnChain; a rank between two cuts of a strip takes three times as much.
-class StripInverse final : public StatePreconditioner {
+class StripInverse final : public StateInverse {
 public:
   using Complex = std::complex<double>;
   /// A strip: its first state in the film, and its columns.
@@ -34,7 +34,6 @@ public:
                std::shared_ptr<Latest> latest);
   ~StripInverse() override;
 
-  [[nodiscard]] bool exact() const override { return true; }
   /// Makes no factors if those at hand belong to the same derivatives, to rounding (1e-12 of each).
   void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) override;
   void apply(std::span<const double> r, std::span<double> x) override;

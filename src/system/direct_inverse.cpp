@@ -122,10 +122,9 @@ private:
 
 /// Keeps what its factors are made from: those of a complex frequency are made when first wanted.
 template <template <class> class Factors>
-class DirectInverse final : public film::StatePreconditioner {
+class DirectInverse final : public film::StateInverse {
 public:
   DirectInverse(MPI_Comm comm, const film::Share& share) : comm_(comm), share_(share), real_(comm, share) {}
-  [[nodiscard]] bool exact() const override { return true; }
   void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) override {
     real_.set(d_states, d_rates, alpha, sigma);
   }

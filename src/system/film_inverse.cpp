@@ -12,13 +12,14 @@ using core::check;
 using Map = Eigen::Map<Eigen::ArrayXd>;
 using ConstMap = Eigen::Map<const Eigen::ArrayXd>;
 
-class RotorSystem::FilmInverse final : public problem::PartInverse {
+class RotorSystem::FilmInverse final : public problem::ExactPartInverse {
 public:
   explicit FilmInverse(RotorSystem& system);
   /// Whether a film offers one; else there are none. The same on all ranks.
   [[nodiscard]] bool offered() const { return offered_; }
   void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override;
-  [[nodiscard]] bool exact() const override { return exact_; }
+  /// Exact if the inverses of all films are.
+  [[nodiscard]] problem::ExactPartInverse* exact() override { return exact_ ? this : nullptr; }
   void apply(const double* r, double* y) override { apply_columns(r, y, 0, 1); }
   void apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) override;
   void apply_transposed(const double* r, double* y) override;
@@ -76,7 +77,7 @@ RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.fil
   for (Film& film : films_) {
     if (!film.inverse)
       film.inverse = make_direct_inverse(comms_->of(film.bearing), s.bearings_[film.bearing].part->share());
-    exact_ = exact_ && film.inverse->exact();
+    exact_ = exact_ && film.inverse->exact() != nullptr;
   }
   MPI_Allreduce(MPI_IN_PLACE, &exact_, 1, MPI_CXX_BOOL, MPI_LAND, s.comm_);
 }
@@ -114,7 +115,7 @@ void RotorSystem::FilmInverse::in_scales(const Film& film, const Scalar* r, Scal
 void RotorSystem::FilmInverse::apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) {
   for (Film& film : films_)
     in_scales(film, r, y, rows, columns, [&](std::span<const double> right, std::span<double> found) {
-      if (film.inverse->exact()) return film.inverse->apply(right, found);
+      if (film.inverse->exact() != nullptr) return film.inverse->apply(right, found);
       const auto n = static_cast<std::size_t>(film.state.size());
       for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c)
         film.inverse->apply(right.subspan(c * n, n), found.subspan(c * n, n));
@@ -125,7 +126,7 @@ void RotorSystem::FilmInverse::apply_transposed(const double* r, double* y) {
   for (Film& film : films_) {
     const Eigen::Index n = film.state.size();
     Map(film.rhs.data(), n) = ConstMap(r + film.row, n) / film.state;
-    film.inverse->apply_transposed(film.rhs, {y + film.row, film.rhs.size()});
+    film.inverse->exact()->apply_transposed(film.rhs, {y + film.row, film.rhs.size()});
     Map(y + film.row, n) *= film.residual;
   }
 }
@@ -134,7 +135,7 @@ void RotorSystem::FilmInverse::set_at(Vec x, Vec rest, std::complex<double> lamb
   system_.evaluate_films(x, rest, film::Need::tangents);
   for (Film& film : films_) {
     const film::StateResponse& own = look(film);
-    film.inverse->set_at(own.d_states, own.d_rates, lambda);
+    film.inverse->exact()->set_at(own.d_states, own.d_rates, lambda);
   }
 }
 
@@ -142,8 +143,9 @@ void RotorSystem::FilmInverse::apply_at(const std::complex<double>* r, std::comp
                                         int columns) {
   using Complex = std::complex<double>;
   for (Film& film : films_)
-    in_scales(film, r, y, rows, columns,
-              [&](std::span<const Complex> right, std::span<Complex> found) { film.inverse->apply_at(right, found); });
+    in_scales(film, r, y, rows, columns, [&](std::span<const Complex> right, std::span<Complex> found) {
+      film.inverse->exact()->apply_at(right, found);
+    });
 }
 
 }  // namespace whirl::system

@@ -27,7 +27,7 @@ RotorSystem::Settling& RotorSystem::settling() {
        FilmComms::in_order(*film_comms_, bearings_, [](const FilmPart& part) { return part.settles(); })) {
     const FilmPart& part = *bearings_[b].part;
     auto inverse = part.film().preconditioner(film_comms_->of(b), part.share());
-    core::require(inverse && inverse->exact(), "films that settle by their own exact inverses");
+    core::require(inverse && inverse->exact() != nullptr, "films that settle by their own exact inverses");
     settling_->films.push_back({b, std::move(inverse), std::vector<double>(static_cast<std::size_t>(part.rows()))});
   }
   return *settling_;

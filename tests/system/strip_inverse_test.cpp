@@ -40,7 +40,7 @@ class Strips : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Strips, AreSolvedExactly) {
   Shared s(GetParam());
-  ASSERT_TRUE(s.inverse->exact());
+  ASSERT_NE(s.inverse->exact(), nullptr);
   const auto n = static_cast<Eigen::Index>(s.film->states());
   Eigen::MatrixXd b(n, 2);  // both right-hand sides at once
   for (Eigen::Index k = 0; k < n; ++k)
@@ -54,7 +54,7 @@ TEST_P(Strips, AreSolvedExactly) {
     Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(*s.film, s.whole, sigma / alpha));
     for (const bool transposed : {false, true}) {
       const Eigen::MatrixXd exact = (transposed ? Eigen::MatrixXd(lu.transpose().solve(b)) : lu.solve(b)) / alpha;
-      transposed ? s.inverse->apply_transposed(r, x) : s.inverse->apply(r, x);
+      transposed ? s.inverse->exact()->apply_transposed(r, x) : s.inverse->apply(r, x);
       const Eigen::MatrixXd found = Eigen::Map<const Eigen::MatrixXd>(x.data(), rows, 2);
       const Eigen::MatrixXd error = found - exact.middleRows(s.share.begin, rows);
       for (Eigen::Index c = 0; c < 2; ++c)
@@ -79,8 +79,8 @@ TEST_P(Strips, AreSolvedAtComplexFrequencies) {
   const Eigen::MatrixXcd here = b.middleRows(s.share.begin, rows);
   const std::vector<Complex> r(here.data(), here.data() + here.size());
   std::vector<Complex> x(r.size());
-  s.inverse->set_at(s.here.d_states, s.here.d_rates, lambda);
-  s.inverse->apply_at(r, x);
+  s.inverse->exact()->set_at(s.here.d_states, s.here.d_rates, lambda);
+  s.inverse->exact()->apply_at(r, x);
   const Eigen::MatrixXcd found = Eigen::Map<const Eigen::MatrixXcd>(x.data(), rows, 2);
   for (Eigen::Index c = 0; c < 2; ++c)
     ASSERT_LE((found - exact.middleRows(s.share.begin, rows)).col(c).lpNorm<Eigen::Infinity>(),

@@ -44,8 +44,10 @@ struct StateField {
   [[nodiscard]] double row_scale() const { return residual_scale > 0 ? residual_scale : scale * typical_frequency; }
 };
 
-/// Inverse of A = alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one communicator,
-/// approximate or exact. All members but exact() are collective.
+class StateInverse;
+
+/// Inverse of A = alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one communicator, good
+/// to precondition with. All members but exact() are collective.
 class StatePreconditioner {
 public:
   StatePreconditioner() = default;
@@ -54,17 +56,24 @@ public:
   virtual ~StatePreconditioner() = default;
   /// Takes the derivatives of this rank's share, at its places.
   virtual void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) = 0;
-  /// Whether apply() is A^-1 to rounding, and has a transpose; else it is good to precondition only.
-  [[nodiscard]] virtual bool exact() const { return false; }
-  /// x = A^-1 r [rows], of an exact one also of several columns [rows x columns] at once, as in its other members.
-  /// Neither throws: the ranks that do not hold the film would wait for the others. Of a singular matrix the answer is
-  /// not finite.
+  /// x = A^-1 r [rows]. Does not throw: the ranks that do not hold the film would wait for the others. Of a singular
+  /// matrix the answer is not finite.
   virtual void apply(std::span<const double> r, std::span<double> x) = 0;
-  /// x = A^-T r of an exact one; core::Bug of others.
-  virtual void apply_transposed(std::span<const double> r, std::span<double> x);
-  /// The same at a complex frequency, of an exact one: A = dg/ds + lambda dg/ds'. Others are core::Bug.
-  virtual void set_at(std::span<const double> d_states, std::span<const double> d_rates, std::complex<double> lambda);
-  virtual void apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> x);
+  /// This, if apply() is A^-1 to rounding; else null.
+  [[nodiscard]] virtual StateInverse* exact() { return nullptr; }
+};
+
+/// A^-1 to rounding. apply() takes several columns [rows x columns] at once, as the other members do.
+class StateInverse : public StatePreconditioner {
+public:
+  [[nodiscard]] StateInverse* exact() final { return this; }
+  /// x = A^-T r.
+  virtual void apply_transposed(std::span<const double> r, std::span<double> x) = 0;
+  /// At a complex frequency: A = dg/ds + lambda dg/ds'.
+  virtual void set_at(std::span<const double> d_states, std::span<const double> d_rates,
+                      std::complex<double> lambda) = 0;
+  /// As apply(), at the lambda of set_at().
+  virtual void apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> x) = 0;
 };
 
 /// A film: g(motion, s, s') = 0, force = f(motion, s, s') with states s of its own. Most films have none, as their

@@ -214,7 +214,7 @@ void EquilibriumProblem::linearise_parts(Vec row) {
   factorised_ = exact_factorised_ = false;
   if (!ports_ && !exact_) {
     auto inverse = system_.make_part_inverse();
-    std::unique_ptr<PortElimination>& elimination = inverse && !inverse->exact() ? ports_ : exact_;
+    std::unique_ptr<PortElimination>& elimination = inverse && inverse->exact() == nullptr ? ports_ : exact_;
     elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
   }
   for (const PortElimination* elimination : {ports_.get(), exact_.get()})

@@ -21,10 +21,6 @@ using Slice = Eigen::Map<VectorXd>;
 FrequencyInverse::FrequencyInverse(problem::System& system, std::unique_ptr<problem::PartInverse> approximate)
     : system_(system), approximate_(std::move(approximate)), gate_(system.comm()) {}
 
-void FrequencyInverse::set(double angle, Vec x, Vec xdot, double alpha, double sigma) {
-  approximate_->set(angle, x, xdot, alpha, sigma);
-}
-
 void FrequencyInverse::set_at(Vec x, Vec rest, Complex lambda) {
   lambda_ = lambda;
   core::Vector rows = core::duplicate(x), columns = core::duplicate(x);

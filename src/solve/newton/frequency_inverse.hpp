@@ -22,19 +22,18 @@ namespace whirl::solve {
 /// i, so that the number of iterations depends neither on the mesh nor on the frequency.
 /// The matrices are stored by pieces of diagonals, spread like the parts; nothing is assembled or factorised.
 /// KSP with prefix "frequency_", by default to the relative residual 1e-12 in at most 300 iterations. Collective.
-class FrequencyInverse final : public problem::PartInverse {
+class FrequencyInverse {
 public:
   /// `approximate`: of the parts of `system`, which lists its entries and outlives this.
   FrequencyInverse(problem::System& system, std::unique_ptr<problem::PartInverse> approximate);
   FrequencyInverse(const FrequencyInverse&) = delete;
   FrequencyInverse& operator=(const FrequencyInverse&) = delete;
-  ~FrequencyInverse() override = default;
 
-  void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override;
-  void apply(const double* r, double* y) override { approximate_->apply(r, y); }
-  void set_at(Vec x, Vec rest, std::complex<double> lambda) override;
-  /// As of the base. Throws core::NotConverged, on all ranks, if the iterations do not come to the tolerance.
-  void apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows, int columns) override;
+  /// Takes the derivatives at x, at rest. Throws core::DomainError as PartInverse::set().
+  void set_at(Vec x, Vec rest, std::complex<double> lambda);
+  /// y = A^-1 r: this rank's rows of all parts [rows x columns]. Throws core::NotConverged, on all ranks, if the
+  /// iterations do not come to the tolerance.
+  void apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows, int columns);
   /// b times columns [this rank's rows of the parts x columns].
   [[nodiscard]] Eigen::MatrixXcd rates_times(const Eigen::MatrixXcd& columns);
   /// Iterations of all solves so far. Not collective.

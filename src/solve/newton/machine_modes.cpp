@@ -62,7 +62,7 @@ public:
 private:
   static std::unique_ptr<problem::PartInverse> exact_inverse(problem::System& system) {
     auto inverse = system.make_part_inverse();
-    return inverse && inverse->exact() ? std::move(inverse) : nullptr;
+    return inverse && inverse->exact() != nullptr ? std::move(inverse) : nullptr;
   }
 
   Vec x_;

@@ -275,10 +275,11 @@ void PortElimination::take_from_hub(const std::vector<PetscInt>& rows) {
 
 // part_answer_ = A_pp^-1 part_rhs_, or with the transpose.
 void PortElimination::solve_parts(bool transposed) {
-  if (by_inverse_ && (!transposed || inverse_->exact())) {
+  problem::ExactPartInverse* const exact = by_inverse_ ? inverse_->exact() : nullptr;
+  if (by_inverse_ && (!transposed || exact != nullptr)) {
     const core::ReadArray r(part_rhs_.get());
     const core::WriteArray y(part_answer_.get());
-    transposed ? inverse_->apply_transposed(r.data(), y.data()) : inverse_->apply(r.data(), y.data());
+    transposed ? exact->apply_transposed(r.data(), y.data()) : inverse_->apply(r.data(), y.data());
     return;
   }
   KSP ksp = part_solver_.get();

@@ -102,12 +102,10 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   set(rows, hub_rows_);
   PetscInt largest = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) largest = std::max(largest, states(i));
-  if (auto inverse = system.make_part_inverse(); inverse && inverse->exact()) {
+  if (auto inverse = system.make_part_inverse(); inverse && inverse->exact() != nullptr) {
     inverse_ = std::move(inverse);
   } else if (inverse && largest > kept_states()) {
-    auto iterated = std::make_unique<FrequencyInverse>(system, std::move(inverse));
-    iterated_ = iterated.get();
-    inverse_ = std::move(iterated);
+    iterated_ = std::make_unique<FrequencyInverse>(system, std::move(inverse));
   }
   core::IndexSet all;
   check(ISAllGather(hub_rows_.get(), all.put()));
@@ -146,7 +144,11 @@ MatrixXcd TransferFunction::together(F&& columns) const {
 
 void TransferFunction::solve_together(const MatrixXcd& right, MatrixXcd Coupled::*to) {
   MatrixXcd x(right.rows(), right.cols());
-  inverse_->apply_at(right.data(), x.data(), right.rows(), static_cast<int>(right.cols()));
+  const auto columns = static_cast<int>(right.cols());
+  if (iterated_)
+    iterated_->apply_at(right.data(), x.data(), right.rows(), columns);
+  else
+    inverse_->exact()->apply_at(right.data(), x.data(), right.rows(), columns);
   bool finite = x.allFinite();
   Index row = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -175,7 +177,10 @@ TransferFunction::Transfers TransferFunction::evaluate(Complex lambda, bool slop
   const auto right = [lambda](const Coupled& p) -> MatrixXcd { return p.g0 + lambda * p.g1; };
   const auto change = [](const Coupled& p) -> MatrixXcd { return p.g1 - p.rates_times(p.x); };
   const auto solve_all = [&] {
-    inverse_->set_at(x_.get(), rest_.get(), lambda);
+    if (iterated_)
+      iterated_->set_at(x_.get(), rest_.get(), lambda);
+    else
+      inverse_->exact()->set_at(x_.get(), rest_.get(), lambda);
     solve_together(together(right), &Coupled::x);
     if (!slopes) return;
     if (iterated_) {
@@ -188,19 +193,18 @@ TransferFunction::Transfers TransferFunction::evaluate(Complex lambda, bool slop
     solve_together(together(change), &Coupled::dx);
   };
   try {
-    if (inverse_) solve_all();
+    if (eliminates_by_inverse()) solve_all();
   } catch (const core::NotConverged&) {
     if (!iterated_ || system_.size() > whole_states()) throw;
-    iterated_ = nullptr;
-    inverse_.reset();
+    iterated_.reset();
   }
-  if (!inverse_) assemble();
+  if (!eliminates_by_inverse()) assemble();
   Transfers out;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Coupled& p = *parts_[i];
     const auto columns = static_cast<PetscInt>(ports_[i].seen.size());
     const auto forces = static_cast<Index>(ports_[i].forces.size());
-    if (!inverse_) {
+    if (!eliminates_by_inverse()) {
       factorise(p, lambda, columns);
       p.solve(right(p), p.x);
       if (slopes) p.solve(change(p), p.dx);

@@ -51,7 +51,7 @@ void TransferFunction::linearise(Vec x) {
     p->x.resize(0, 0);
     p->dx.resize(0, 0);
   }
-  if (!inverse_ || !take_entries()) take_assembled();
+  if (!eliminates_by_inverse() || !take_entries()) take_assembled();
 }
 
 void TransferFunction::assemble() const {

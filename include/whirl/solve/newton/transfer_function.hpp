@@ -89,6 +89,8 @@ public:
 
 private:
   struct Coupled;
+  /// Whether parts are solved by inverses of their own, not as matrices.
+  [[nodiscard]] bool eliminates_by_inverse() const { return inverse_ || iterated_; }
   /// Columns of all parts below each other, `columns(part)` being those of a part [local x ports].
   template <class F>
   [[nodiscard]] Eigen::MatrixXcd together(F&& columns) const;
@@ -107,8 +109,8 @@ private:
   /// Gathers a state of which every rank has its own rows.
   [[nodiscard]] std::vector<Complex> whole(const std::vector<Complex>& local) const;
   problem::System& system_;
-  std::unique_ptr<problem::PartInverse> inverse_;  // exact, or iterated on, or null
-  FrequencyInverse* iterated_ = nullptr;           // `inverse_` where it is iterated on
+  std::unique_ptr<problem::PartInverse> inverse_;  // an exact one, or null
+  std::unique_ptr<FrequencyInverse> iterated_;     // in its place where inverses are approximate
   core::Vector x_, rest_, state_scale_, row_scale_;
   mutable core::Matrix jx_, jd_;  // where A_i are wanted as matrices
   problem::Entries entries_;
