@@ -1,6 +1,5 @@
 #include "whirl/film/film.hpp"
 
-
 #include "film/steady.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/coefficients.hpp"

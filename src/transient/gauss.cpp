@@ -34,17 +34,6 @@ solve::Tableau gauss(int stages) {
   return {a, b, c, 2 * stages};
 }
 
-// L of A = L U with ones on the diagonal of U.
-MatrixXd lower_factor(const MatrixXd& a) {
-  const Index s = a.rows();
-  MatrixXd l = MatrixXd::Zero(s, s), u = MatrixXd::Identity(s, s);
-  for (Index j = 0; j < s; ++j) {
-    for (Index i = j; i < s; ++i) l(i, j) = a(i, j) - l.row(i).head(j).dot(u.col(j).head(j));
-    for (Index k = j + 1; k < s; ++k) u(j, k) = (a(j, k) - l.row(j).head(j).dot(u.col(k).head(j))) / l(j, j);
-  }
-  return l;
-}
-
 }  // namespace
 
 GaussSteps::GaussSteps(Equations& equations, int stages, double tolerance)
@@ -52,7 +41,7 @@ GaussSteps::GaussSteps(Equations& equations, int stages, double tolerance)
       tableau_(gauss(stages)),
       tolerance_(tolerance),
       inverse_(core::DenseLu<double>(tableau_.a).inverse()),
-      lower_(core::DenseLu<double>(lower_factor(tableau_.a)).inverse()),
+      lower_(core::DenseLu<double>(solve::lower_factor(tableau_.a)).inverse()),
       end_weights_(inverse_.transpose() * tableau_.b),
       slope_(equations.make_state()),
       work_(equations.make_state()),

@@ -56,6 +56,12 @@ TEST(Scheme, RadauPointsOfTheBooks) {
   EXPECT_NEAR(three.weight(2), 1.0 / 9, 1e-15);
 }
 
+// By hand, of Radau IIA of two stages: A = [5/12 -1/12; 3/4 1/4].
+TEST(Scheme, LowerFactorOfRadau) {
+  const Eigen::Matrix2d a{{5.0 / 12, -1.0 / 12}, {0.75, 0.25}}, l{{5.0 / 12, 0}, {0.75, 0.4}};
+  EXPECT_TRUE(solve::lower_factor(a).isApprox(l, 1e-15));
+}
+
 TEST(Scheme, RejectsOtherDegrees) {
   EXPECT_THROW((void)solve::make_scheme(0, Points::radau), core::InputError);
   EXPECT_THROW((void)solve::make_scheme(11, Points::gauss), core::InputError);

@@ -47,6 +47,16 @@ Eigen::VectorXd lagrange_slope(const Scheme& scheme, double t) {
   return w;
 }
 
+Eigen::MatrixXd lower_factor(const Eigen::MatrixXd& a) {
+  const Eigen::Index m = a.rows();
+  Eigen::MatrixXd l = Eigen::MatrixXd::Zero(m, m), u = Eigen::MatrixXd::Identity(m, m);
+  for (Eigen::Index k = 0; k < m; ++k) {
+    for (Eigen::Index i = k; i < m; ++i) l(i, k) = a(i, k) - l.row(i).head(k).dot(u.col(k).head(k));
+    for (Eigen::Index j = k + 1; j < m; ++j) u(k, j) = (a(k, j) - l.row(k).head(k).dot(u.col(j).head(k))) / l(k, k);
+  }
+  return l;
+}
+
 Scheme make_scheme(int degree, Points points) {
   if (degree < 1 || degree > 10) throw core::InputError(fmt::format("collocation degree {} is outside 1..10", degree));
   Scheme s;

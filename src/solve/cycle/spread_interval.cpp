@@ -16,21 +16,6 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-// Crout's T of A = T U, U with unit diagonal.
-MatrixXd lower_factor(const MatrixXd& a) {
-  const Index m = a.rows();
-  MatrixXd t = MatrixXd::Zero(m, m), u = MatrixXd::Identity(m, m);
-  for (Index k = 0; k < m; ++k) {
-    for (Index i = k; i < m; ++i) t(i, k) = a(i, k) - t.row(i).head(k).dot(u.col(k).head(k));
-    for (Index j = k + 1; j < m; ++j) u(k, j) = (a(k, j) - t.row(k).head(k).dot(u.col(j).head(k))) / t(k, k);
-  }
-  return t;
-}
-
-}  // namespace
-
 SpreadStep::SpreadStep(MPI_Comm comm, PetscInt local, const Scheme& scheme)
     : comm_(comm), scheme_(&scheme), gate_(comm) {
   core::require(scheme.points == Points::radau, "intervals spread over ranks have Radau points");

@@ -34,4 +34,8 @@ struct Scheme {
 [[nodiscard]] Eigen::VectorXd lagrange(const Scheme& scheme, double t);
 [[nodiscard]] Eigen::VectorXd lagrange_slope(const Scheme& scheme, double t);
 
+/// L of A = L U with ones on the diagonal of U, without exchanges of rows (Crout), of the coefficients A [m x m] of a
+/// scheme: stages by L alone, one after the other, precondition those by A (van der Houwen and de Swart 1997).
+[[nodiscard]] Eigen::MatrixXd lower_factor(const Eigen::MatrixXd& a);
+
 }  // namespace whirl::solve
