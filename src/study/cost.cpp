@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "whirl/core/cost.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/rotor/element.hpp"
 #include "whirl/rotor/freedom.hpp"
+#include "whirl/solve/cycle/cost.hpp"
 
 namespace whirl::study {
 
@@ -74,17 +74,17 @@ double memory_of_cycles(const system::Machine& machine, double intervals, double
   const double films = rotor ? numbers_of_films(machine, stages, width) : 0;
   // Of a whole shaft no interval has a matrix, only the modes in time have their factors.
   // A node sees two others: 13 entries a state.
-  const core::cost::CycleCounts counts{.states = std::llround(n),
-                                       .intervals = std::llround(intervals),
-                                       .degree = std::llround(stages),
-                                       .own = std::llround(n_film_states(machine)),
-                                       .band = width,
-                                       .forces = 2 * static_cast<std::int64_t>(machine.bearings.size()),
-                                       .entries = std::llround(13 * n)};
-  const bool sweeps = films > 0 && core::cost::sweeps(counts) < core::cost::dense_joining(counts);
+  const solve::cost::CycleCounts counts{.states = std::llround(n),
+                                        .intervals = std::llround(intervals),
+                                        .degree = std::llround(stages),
+                                        .own = std::llround(n_film_states(machine)),
+                                        .band = width,
+                                        .forces = 2 * static_cast<std::int64_t>(machine.bearings.size()),
+                                        .entries = std::llround(13 * n)};
+  const bool sweeps = films > 0 && solve::cost::sweeps(counts) < solve::cost::dense_joining(counts);
   const bool whole = radau && films == 0 && rotor && machine.rotor.type == rotor::Options::Type::shaft &&
                      machine.rotor.reduction.type == rotor::Reduction::Type::none &&
-                     core::cost::time_modes(counts) < core::cost::dense_joining(counts);
+                     solve::cost::time_modes(counts) < solve::cost::dense_joining(counts);
   if (films > 0) return 8 * intervals * (400 + films + (sweeps ? 0 : n * n));
   return 8 * intervals * (400 + 30 * (stages + 1) * n + (whole ? 40 * stages * n : n * n));
 }

@@ -22,43 +22,8 @@ std::int64_t change(const std::function<bool(std::int64_t)>& second_is_cheaper, 
 
 }  // namespace
 
-// Compliant short films under a rigid rotor. Measured: dense 4.8 ms a point at 16 states against 5.7, at 24 8.9 against
-// 7.0; on 60 intervals of degree 2 6.0 against 6.3 and 10.9 against 8.7.
-TEST(Cost, SweepsBeginAtTwentyStatesOfFilms) {
-  for (const auto& [degree, intervals] : {std::pair{4, 40}, {2, 60}}) {
-    const auto at = change(
-        [degree = degree, intervals = intervals](std::int64_t n) {
-          const cost::CycleCounts c{
-              .states = n + 4, .intervals = intervals, .degree = degree, .own = n, .band = 3, .forces = 2};
-          return cost::sweeps(c) < cost::dense_joining(c);
-        },
-        1);
-    EXPECT_GE(at + 4, 16);
-    EXPECT_LE(at + 4, 28);
-  }
-}
-
-// Five films of twelve states behind 104 of a train.
-TEST(Cost, OfATrainInFilmsWithStatesSweepsAreCheaper) {
-  const cost::CycleCounts c{.states = 164, .intervals = 60, .degree = 2, .own = 60, .band = 3, .forces = 10};
-  EXPECT_LT(cost::sweeps(c), cost::dense_joining(c));
-}
-
-// Uniform shafts between two bearings, 13 entries a state. Measured: dense 11.7 ms at 72 states against 17.9, at 120
-// 28.0 against 26.2, at 168 52.7 against 33.7.
-TEST(Cost, TimeModesBeginAtAHundredStatesOfAShaft) {
-  const auto modes = [](std::int64_t n, std::int64_t entries) {
-    const cost::CycleCounts c{.states = n, .intervals = 60, .degree = 2, .forces = 4, .entries = entries};
-    return cost::time_modes(c) < cost::dense_joining(c);
-  };
-  const auto at = change([&](std::int64_t n) { return modes(n, 13 * n); }, 8);
-  EXPECT_GE(at, 88);
-  EXPECT_LE(at, 144);
-  // Reduced to 21 nodes its blocks are dense.
-  EXPECT_FALSE(modes(104, 104 * 52));
-}
-
-// The same shafts. Measured: dense 0.155 ms a step at 168 states against 0.183, at 216 0.273 against 0.205.
+// Uniform shafts between two bearings, 13 entries a state. Measured: dense 0.155 ms a step at 168 states against 0.183,
+// at 216 0.273 against 0.205.
 TEST(Cost, StepsInTimeAreSparseFromTwoHundredStates) {
   const auto at = change([](std::int64_t n) { return cost::sparse_step(13 * n) < cost::dense_step(n); }, 1);
   EXPECT_GE(at, 168);

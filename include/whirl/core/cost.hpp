@@ -18,26 +18,6 @@ inline constexpr double call = 4.5e6;
 /// An exchange with a neighbour, 5 us.
 inline constexpr double message = 1.65e5;
 
-/// A cycle of n states by collocation or steps.
-struct CycleCounts {
-  std::int64_t states = 0, borders = 1;
-  std::int64_t intervals = 0, degree = 1;
-  std::int64_t own = 0;      ///< states of films among them
-  std::int64_t band = 0;     ///< neighbours that one of these sees, itself included
-  std::int64_t forces = 0;   ///< nonlinear forces on the others
-  std::int64_t entries = 0;  ///< of the linear blocks of the others
-};
-
-/// A point of a branch of cycles: three iterations of Newton's method, and multipliers.
-
-/// Intervals joined by one dense matrix: all columns pass all intervals in every iteration, and LAPACK finds all
-/// multipliers, in 70 n^3.
-[[nodiscard]] double dense_joining(const CycleCounts& cycle);
-/// Joined by sweeps: 50 columns pass the intervals one by one, in GMRES and in the search for leading multipliers.
-[[nodiscard]] double sweeps(const CycleCounts& cycle);
-/// Of a machine that is linear but for its forces, by modes in time, one sparse LU a point, and the same sweeps.
-[[nodiscard]] double time_modes(const CycleCounts& cycle);
-
 /// A step in time of n states by the factors of a dense Jacobian, and of a sparse one with so many entries by MUMPS.
 [[nodiscard]] double dense_step(std::int64_t states);
 [[nodiscard]] double sparse_step(std::int64_t entries);

@@ -8,9 +8,9 @@
 #include "solve/cycle/film_march.hpp"
 #include "solve/cycle/own_block.hpp"
 #include "whirl/core/agree.hpp"
-#include "whirl/core/cost.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/composition.hpp"
+#include "whirl/solve/cycle/cost.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -25,13 +25,13 @@ constexpr double two_pi = 2 * std::numbers::pi;
 
 using Joining = CycleOptions::Joining;
 
-core::cost::CycleCounts counts(const CycleOptions& options, problem::BlockStructure& structure, std::size_t intervals) {
-  core::cost::CycleCounts c{.states = structure.size(),
-                            .borders = options.autonomous ? 2 : 1,
-                            .intervals = static_cast<Index>(intervals),
-                            .degree = options.degree,
-                            .forces = structure.n_forces(),
-                            .entries = structure.l1().nonZeros() + structure.l0().nonZeros()};
+cost::CycleCounts counts(const CycleOptions& options, problem::BlockStructure& structure, std::size_t intervals) {
+  cost::CycleCounts c{.states = structure.size(),
+                      .borders = options.autonomous ? 2 : 1,
+                      .intervals = static_cast<Index>(intervals),
+                      .degree = options.degree,
+                      .forces = structure.n_forces(),
+                      .entries = structure.l1().nonZeros() + structure.l0().nonZeros()};
   for (const problem::OwnStates& film : structure.own()) {
     c.states += film.count;
     if (options.joining == Joining::one_by_one) continue;  // dense maps, whatever is behind them
@@ -48,8 +48,8 @@ CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Blo
   if (!structure) return Way::dense;
   if (!structure->own().empty()) return Way::own_states;
   const auto modes_are_cheaper = [&] {
-    const core::cost::CycleCounts c = counts(options, *structure, intervals);
-    return core::cost::time_modes(c) < core::cost::dense_joining(c);
+    const cost::CycleCounts c = counts(options, *structure, intervals);
+    return cost::time_modes(c) < cost::dense_joining(c);
   };
   if (options.points == Points::radau &&
       (options.joining == Joining::modes || (options.joining == Joining::cheapest && modes_are_cheaper())))
@@ -74,8 +74,8 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
   run_.borders = borders_;
   run_.multipliers = options.multipliers;
   const auto sweeps_are_cheaper = [&] {
-    const core::cost::CycleCounts c = counts(options, *structure_, mesh.size() - 1);
-    return core::cost::sweeps(c) < core::cost::dense_joining(c);
+    const cost::CycleCounts c = counts(options, *structure_, mesh.size() - 1);
+    return cost::sweeps(c) < cost::dense_joining(c);
   };
   const bool sweeps = options.joining == Joining::sweeps ||
                       ((options.joining == Joining::cheapest || options.joining == Joining::one_by_one) &&
