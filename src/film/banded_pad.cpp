@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "film/banded_pad.hpp"
-#include "whirl/core/truncation.hpp"
+#include "whirl/thermal/truncation.hpp"
 
 namespace whirl::film {
 
-using core::EdgeInterval, core::IntervalIntegral, core::truncated_edge, core::truncated_linear;
+using thermal::EdgeInterval, thermal::IntervalIntegral, thermal::truncated_edge, thermal::truncated_linear;
 
 BandedPad::BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant)
     : PadEquations(pad, options, lubricant),

@@ -13,12 +13,12 @@
 #include "film/mobility.hpp"
 #include "film/pack.hpp"
 #include "film/pad.hpp"
-#include "whirl/core/truncation.hpp"
+#include "whirl/thermal/truncation.hpp"
 
 namespace whirl::film {
 namespace {
 
-using core::EdgeInterval, core::IntervalIntegral, core::truncated_edge, core::truncated_linear;
+using thermal::EdgeInterval, thermal::IntervalIntegral, thermal::truncated_edge, thermal::truncated_linear;
 
 class ModalPad final : public PadSolver {
 public:

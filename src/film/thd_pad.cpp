@@ -7,11 +7,11 @@
 #include "film/mobility.hpp"
 #include "film/thd_pad_flow.hpp"
 #include "film/thd_pad_report.hpp"
-#include "whirl/core/truncation.hpp"
+#include "whirl/thermal/truncation.hpp"
 
 namespace whirl::film {
 
-using core::EdgeInterval, core::IntervalIntegral, core::truncated_edge, core::truncated_linear;
+using thermal::EdgeInterval, thermal::IntervalIntegral, thermal::truncated_edge, thermal::truncated_linear;
 namespace {
 
 // Conduction across a film of L layers, in lambda/h: out of layer k flows (K T - b)_k. One layer is a parabola, which a

@@ -5,7 +5,7 @@
 #include "thermal/film_flow_work.hpp"
 #include "thermal/profile.hpp"
 #include "thermal/row_halo.hpp"
-#include "whirl/core/truncation.hpp"
+#include "whirl/thermal/truncation.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -217,7 +217,7 @@ FlowReport FilmFlow::report(const Flow& flow) const {
   const auto press = [&](double left, double right, double angle, double next, double area) {
     double by_left = 0.5, by_right = 0.5;
     if (truncated) {
-      const auto part = core::truncated_linear(left, right);
+      const auto part = truncated_linear(left, right);
       by_left = part.d_left;
       by_right = part.d_right;
     }

@@ -4,12 +4,12 @@
 #include <random>
 
 #include "film/cases.hpp"
-#include "whirl/core/truncation.hpp"
+#include "whirl/thermal/truncation.hpp"
 
 namespace whirl::film::testing {
 namespace {
 
-using core::truncated_edge, core::truncated_linear;
+using thermal::truncated_edge, thermal::truncated_linear;
 
 using C = Reynolds::Cavitation;
 

@@ -11,7 +11,7 @@
 
 #include <algorithm>
 
-namespace whirl::core {
+namespace whirl::thermal {
 
 inline double where_negative(double x, double a) {
   return x < 0.0 ? a : 0.0;
@@ -52,4 +52,4 @@ inline EdgeInterval truncated_edge(double near, double far) {
   return {0.5 * near * t * (2.0 - t), t * (2.0 - 1.5 * t) - by_size, 0.5 * by_size};
 }
 
-}  // namespace whirl::core
+}  // namespace whirl::thermal
