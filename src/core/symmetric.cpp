@@ -8,6 +8,8 @@ void dsyev_(const char* job, const char* triangle, const int* n, double* a, cons
             const int* lwork, int* info);
 void dsygv_(const int* type, const char* job, const char* triangle, const int* n, double* a, const int* lda, double* b,
             const int* ldb, double* w, double* work, const int* lwork, int* info);
+void dposv_(const char* triangle, const int* n, const int* columns, double* a, const int* lda, double* b,
+            const int* ldb, int* info);
 }
 
 namespace whirl::core {
@@ -43,6 +45,15 @@ SymmetricPairs symmetric_pairs(Eigen::MatrixXd a, Eigen::MatrixXd b, const std::
   return pairs(a, vectors, what, [&](double* values, double* work, const int* size, int* info) {
     dsygv_(&type, vectors ? "V" : "N", "L", &n, a.data(), &n, b.data(), &n, values, work, size, info);
   });
+}
+
+Eigen::MatrixXd solve_definite(Eigen::MatrixXd a, Eigen::MatrixXd b, const std::string& what) {
+  const auto n = static_cast<int>(a.rows()), columns = static_cast<int>(b.cols());
+  if (n == 0 || columns == 0) return b;
+  int info = 0;
+  dposv_("L", &n, &columns, a.data(), &n, b.data(), &n, &info);
+  if (info != 0) throw NotConverged(what + " is not positive definite");
+  return b;
 }
 
 }  // namespace whirl::core

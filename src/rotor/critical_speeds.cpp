@@ -7,8 +7,8 @@
 
 #include "planar.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/matrix_rows.hpp"
 #include "whirl/core/symmetric.hpp"
-#include "whirl/rotor/dense.hpp"
 #include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -26,12 +26,12 @@ struct Plane {
 
 Plane plane_of(const Planar& planar, const std::vector<SpringAt>& springs, double stiffness,
                const std::vector<Stand>& stands, std::size_t direction) {
-  const MatrixXd shaft = dense(planar.stiffness.get());
+  const MatrixXd shaft = core::dense(planar.stiffness.get());
   const Index n = shaft.rows(), all = n + static_cast<Index>(stands.size());
   Plane out{MatrixXd::Zero(all, all), MatrixXd::Zero(all, all), MatrixXd::Zero(all, all)};
   out.stiffness.topLeftCorner(n, n) = shaft;
-  out.mass.topLeftCorner(n, n) = dense(planar.mass.get());
-  out.gyroscopic.topLeftCorner(n, n) = dense(planar.gyroscopic.get());
+  out.mass.topLeftCorner(n, n) = core::dense(planar.mass.get());
+  out.gyroscopic.topLeftCorner(n, n) = core::dense(planar.gyroscopic.get());
   for (std::size_t k = 0; k < stands.size(); ++k) {
     const Index at = n + static_cast<Index>(k);
     out.stiffness(at, at) = stands[k].stiffness[direction];

@@ -9,7 +9,7 @@
 #include "eigen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/rotor/dense.hpp"
+#include "whirl/core/symmetric.hpp"
 
 namespace whirl::rotor {
 namespace {
@@ -108,7 +108,7 @@ PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
         sum_over_ranks(own.transpose() * Eigen::Map<const Eigen::VectorXd>(w.data(), w.size()), comm);
     if (held == 0) return basis;
     const Eigen::MatrixXd stiffness = projected(k, own);
-    core::agree(comm, [&] { basis.offset -= own * solve_definite(stiffness, load, held_stiffness); });
+    core::agree(comm, [&] { basis.offset -= own * core::solve_definite(stiffness, load, held_stiffness); });
     return basis;
   }
   const bool with_modes = reduction.type == Reduction::Type::craig_bampton;

@@ -11,7 +11,8 @@
 #include "reduction.hpp"
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/from_options.hpp"
-#include "whirl/rotor/dense.hpp"
+#include "whirl/core/matrix_rows.hpp"
+#include "whirl/core/symmetric.hpp"
 
 namespace whirl::rotor {
 namespace {
@@ -58,7 +59,7 @@ Whole whole_of(const MatrixXd& m, const MatrixXd& g, const MatrixXd& k, const Ma
 }
 
 MatrixXd damping_of(const Planar& planar, Index n) {
-  return planar.damping ? dense(planar.damping.get()) : MatrixXd(MatrixXd::Zero(n, n));
+  return planar.damping ? core::dense(planar.damping.get()) : MatrixXd(MatrixXd::Zero(n, n));
 }
 
 struct Mode {
@@ -160,7 +161,7 @@ HeldModes held_modes(const Whole& a, double speed, Index states) {
   for (MatrixXd* m : {&out.displacement, &out.velocity, &out.left_displacement, &out.left_velocity})
     m->resize(n, states);
   out.quality.neglected = std::numeric_limits<double>::infinity();
-  const MatrixXd by_mass = solve_definite(a.mass, c.transpose(), "the mass of the shaft with its masters held");
+  const MatrixXd by_mass = core::solve_definite(a.mass, c.transpose(), "the mass of the shaft with its masters held");
   std::vector<bool> pair;  // of this column and the next
   Index at = 0;
   for (Mode& mode : slowest(a.mass, c, k, states)) {
@@ -207,7 +208,8 @@ HeldModes held_modes(const Whole& a, double speed, Index states) {
 }  // namespace
 
 StateBasis state_basis(const Planar& planar, const Options& options) {
-  const MatrixXd m = dense(planar.mass.get()), g = dense(planar.gyroscopic.get()), k = dense(planar.stiffness.get());
+  const MatrixXd m = core::dense(planar.mass.get()), g = core::dense(planar.gyroscopic.get()),
+                 k = core::dense(planar.stiffness.get());
   const double speed = options.reduction.speed;
   const std::vector<int> masters = planar_masters(options.reduction);
   std::vector<int> slaves;
@@ -219,11 +221,11 @@ StateBasis state_basis(const Planar& planar, const Options& options) {
 
   // T of one plane.
   MatrixXd t = MatrixXd::Zero(n, n_masters);
-  const MatrixXd carried = solve_definite(k_ss, part(k, slaves, masters), held_stiffness);
+  const MatrixXd carried = core::solve_definite(k_ss, part(k, slaves, masters), held_stiffness);
   for (Index i = 0; i < n_slaves; ++i) t.row(slaves[static_cast<std::size_t>(i)]) = -carried.row(i);
   for (Index j = 0; j < n_masters; ++j) t(masters[static_cast<std::size_t>(j)], j) = 1;
-  const MatrixXd per_mass =
-      t * solve_definite(t.transpose() * m * t, MatrixXd::Identity(n_masters, n_masters), "the mass of the masters");
+  const MatrixXd per_mass = t * core::solve_definite(t.transpose() * m * t, MatrixXd::Identity(n_masters, n_masters),
+                                                     "the mass of the masters");
 
   const Whole held = whole_of(part(m, slaves, slaves), part(g, slaves, slaves), k_ss,
                               part(damping_of(planar, n), slaves, slaves), options);
@@ -259,9 +261,9 @@ StateBasis state_basis(const Planar& planar, const Options& options) {
 }
 
 StateProjection project(const Planar& planar, const Options& options, const StateBasis& basis) {
-  const MatrixXd m = dense(planar.mass.get());
-  const Whole a =
-      whole_of(m, dense(planar.gyroscopic.get()), dense(planar.stiffness.get()), damping_of(planar, m.rows()), options);
+  const MatrixXd m = core::dense(planar.mass.get());
+  const Whole a = whole_of(m, core::dense(planar.gyroscopic.get()), core::dense(planar.stiffness.get()),
+                           damping_of(planar, m.rows()), options);
   const MatrixXd q = apart(basis.displacement), v = apart(basis.velocity), left_q = apart(basis.left_displacement),
                  left_v = apart(basis.left_velocity);
   StateProjection out;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -33,6 +34,15 @@ TEST(Symmetric, AChainHasItsEigenvalues) {
   const core::SymmetricPairs pairs = core::symmetric_pairs(chain(), "a chain");
   for (int k = 0; k < n; ++k) EXPECT_NEAR(pairs.values(k), exact(k), 1e-14);
   EXPECT_LT((pairs.vectors.transpose() * pairs.vectors - MatrixXd::Identity(n, n)).norm(), 1e-13);
+}
+
+// (a^-1)_ij = min(i, j) (n + 1 - max(i, j))/(n + 1), counted from one.
+TEST(Symmetric, ADefiniteMatrixIsInverted) {
+  const MatrixXd inverse = core::solve_definite(chain(), MatrixXd::Identity(n, n), "a chain");
+  for (int i = 1; i <= n; ++i)
+    for (int j = 1; j <= n; ++j)
+      EXPECT_NEAR(inverse(i - 1, j - 1), std::min(i, j) * (n + 1.0 - std::max(i, j)) / (n + 1), 1e-14);
+  EXPECT_THROW((void)core::solve_definite(-chain(), MatrixXd::Identity(n, n), "a chain"), core::NotConverged);
 }
 
 TEST(Symmetric, OfTwoMatricesTheSecondMakesTheVectorsOne) {

@@ -1,5 +1,5 @@
 #pragma once
-// Eigenvalues of dense symmetric matrices, by LAPACK: Eigen's solvers take seconds of compiling in each file.
+// Dense symmetric matrices, by LAPACK: Eigen's solvers take seconds of compiling in each file.
 
 #include <Eigen/Core>
 #include <string>
@@ -19,5 +19,9 @@ struct SymmetricPairs {
 /// core::NotConverged as above, and if b is not positive definite.
 [[nodiscard]] SymmetricPairs symmetric_pairs(Eigen::MatrixXd a, Eigen::MatrixXd b, const std::string& what,
                                              bool vectors = true);
+
+/// a^-1 b of a matrix `what` that has to be positive definite, of which the lower triangle is read. core::NotConverged
+/// if it is not.
+[[nodiscard]] Eigen::MatrixXd solve_definite(Eigen::MatrixXd a, Eigen::MatrixXd b, const std::string& what);
 
 }  // namespace whirl::core

@@ -1,8 +1,8 @@
 #include "whirl/solve/cycle/scaled_point.hpp"
 
-#include "solve/newton/thin.hpp"
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/matrix_rows.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -247,7 +247,7 @@ void ScaledPoint::linearise(double angle, const VectorXd& x, const VectorXd& xdo
   }
   put(x, xdot);
   const auto scaled = [&]() -> MatrixXd {
-    return residual_scale_.cwiseInverse().asDiagonal() * dense(matrix_.get()) * state_scale_.asDiagonal();
+    return residual_scale_.cwiseInverse().asDiagonal() * core::dense(matrix_.get()) * state_scale_.asDiagonal();
   };
   system_.jacobian(angle, x_.get(), xdot_.get(), 1, 0, matrix_.get());
   jx = scaled();

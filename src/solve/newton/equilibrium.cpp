@@ -11,10 +11,10 @@
 
 #include "solve/newton/parts_options.hpp"
 #include "solve/newton/port_krylov.hpp"
-#include "solve/newton/thin.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/matrix_rows.hpp"
 #include "whirl/problem/settles.hpp"
 
 namespace whirl::solve {
@@ -146,10 +146,11 @@ void EquilibriumProblem::list() {
     if (!jacobian_) jacobian_ = system_.make_jacobian();
     system_.jacobian(0, x_.get(), rest_.get(), 1, 0, jacobian_.get());
     out.begin();
-    const PetscInt first = first_row(jacobian_.get());
-    for_rows(jacobian_.get(), [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
-      for (PetscInt k = 0; k < count; ++k) out.add(first + i, columns[k], values[k]);
-    });
+    const PetscInt first = core::first_row(jacobian_.get());
+    core::for_rows(jacobian_.get(),
+                   [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
+                     for (PetscInt k = 0; k < count; ++k) out.add(first + i, columns[k], values[k]);
+                   });
   }
   // The border; entries of its row in the hub's columns belong to the rank that has this row.
   const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;

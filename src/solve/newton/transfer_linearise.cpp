@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <span>
 
-#include "solve/newton/thin.hpp"
 #include "solve/newton/transfer_part.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/matrix_rows.hpp"
 
 namespace whirl::solve {
 
@@ -69,18 +69,18 @@ void TransferFunction::assemble() const {
 
 void TransferFunction::take_assembled() {
   assemble();
-  a_hub_ = gather_matrix(block(jx_.get(), hub_rows_.get(), hub_rows_.get()).get());
-  b_hub_ = gather_matrix(block(jd_.get(), hub_rows_.get(), hub_rows_.get()).get());
+  a_hub_ = core::gather_matrix(block(jx_.get(), hub_rows_.get(), hub_rows_.get()).get());
+  b_hub_ = core::gather_matrix(block(jd_.get(), hub_rows_.get(), hub_rows_.get()).get());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Coupled& p = *parts_[i];
     const core::Matrix g = block(jx_.get(), p.rows.get(), hub_rows_.get());
     const core::Matrix f = transpose(block(jx_.get(), hub_rows_.get(), p.rows.get()));
-    ports_[i].seen = used_columns(g.get());
-    ports_[i].forces = used_columns(f.get());
-    p.g0 = thin(g.get(), ports_[i].seen);
-    p.f0 = thin(f.get(), ports_[i].forces);
-    p.g1 = thin(block(jd_.get(), p.rows.get(), hub_rows_.get()).get(), ports_[i].seen);
-    p.f1 = thin(transpose(block(jd_.get(), hub_rows_.get(), p.rows.get())).get(), ports_[i].forces);
+    ports_[i].seen = core::used_columns(g.get());
+    ports_[i].forces = core::used_columns(f.get());
+    p.g0 = core::thin(g.get(), ports_[i].seen);
+    p.f0 = core::thin(f.get(), ports_[i].forces);
+    p.g1 = core::thin(block(jd_.get(), p.rows.get(), hub_rows_.get()).get(), ports_[i].seen);
+    p.f1 = core::thin(transpose(block(jd_.get(), hub_rows_.get(), p.rows.get())).get(), ports_[i].forces);
   }
 }
 
@@ -165,7 +165,7 @@ bool TransferFunction::take_entries() {
       else
         (rates ? p.f1 : p.f0)(at, place[(2 * part + 1) * hub + r]) += values[k] * states[i] / hub_row_scale_[r];
     });
-    (rates ? b_hub_ : a_hub_) = gather_entries(comm(), hub_, mine);
+    (rates ? b_hub_ : a_hub_) = core::gather_entries(comm(), hub_, mine);
   }
   return true;
 }

@@ -4,7 +4,7 @@
 
 #include "solve/newton/local_part.hpp"
 #include "solve/newton/port_krylov.hpp"
-#include "solve/newton/thin.hpp"
+#include "whirl/core/matrix_rows.hpp"
 
 namespace whirl::solve {
 
@@ -80,7 +80,7 @@ StageSolver::StageSolver(core::Matrix matrix) : matrix_(std::move(matrix)) {
   PetscInt n = 0;
   check(MatGetSize(matrix_.get(), &n, nullptr));
   if (core::size_of(comm) == 1 && n <= small)
-    dense_.emplace(dense(matrix_.get()));
+    dense_.emplace(core::dense(matrix_.get()));
   else
     solver_ = make_solver(comm, matrix_.get());
 }

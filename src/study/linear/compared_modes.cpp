@@ -8,9 +8,9 @@
 
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/matrix_rows.hpp"
 #include "whirl/core/pivoted_lu.hpp"
 #include "whirl/problem/structure.hpp"
-#include "whirl/rotor/dense.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -40,12 +40,12 @@ MatrixXd whole_states(const system::RotorSystem& reduced) {
   const Index kept = 2 * rotor.size(), others = 2 * reduced.coordinates() - kept;
   MatrixXd q, v;
   if (const auto& states = rotor.states()) {
-    q = rotor::dense(states->displacement.get());
-    v = rotor::dense(states->velocity.get());
+    q = core::dense(states->displacement.get());
+    v = core::dense(states->velocity.get());
   } else if (!rotor.matrices().basis) {
     return MatrixXd::Identity(2 * reduced.coordinates(), 2 * reduced.coordinates());
   } else {
-    const MatrixXd t = rotor::dense(rotor.matrices().basis.get());
+    const MatrixXd t = core::dense(rotor.matrices().basis.get());
     q = v = MatrixXd::Zero(t.rows(), kept);
     for (Index j = 0; j < t.cols(); ++j) {
       q.col(2 * j) = t.col(j);

@@ -1,11 +1,9 @@
-#include "solve/newton/thin.hpp"
+#include "whirl/core/matrix_rows.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-namespace whirl::solve {
-
-using core::check;
+namespace whirl::core {
 
 PetscInt first_row(Mat m) {
   PetscInt begin = 0;
@@ -53,7 +51,7 @@ Eigen::SparseMatrix<double> gather_matrix(Mat m) {
 }
 
 Eigen::SparseMatrix<double> gather_entries(MPI_Comm comm, Eigen::Index n, const std::vector<double>& mine) {
-  const auto size = static_cast<std::size_t>(core::size_of(comm));
+  const auto size = static_cast<std::size_t>(size_of(comm));
   const int here = static_cast<int>(mine.size());
   std::vector<int> counts(size), begins(size);
   MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
@@ -70,7 +68,7 @@ Eigen::SparseMatrix<double> gather_entries(MPI_Comm comm, Eigen::Index n, const 
 
 Eigen::MatrixXd dense(Mat m) {
   PetscInt rows = 0, width = 0;
-  core::check(MatGetSize(m, &rows, &width));
+  check(MatGetSize(m, &rows, &width));
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, width);
   for_rows(m, [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
     for (PetscInt k = 0; k < count; ++k) out(i, columns[k]) = values[k];
@@ -78,4 +76,4 @@ Eigen::MatrixXd dense(Mat m) {
   return out;
 }
 
-}  // namespace whirl::solve
+}  // namespace whirl::core

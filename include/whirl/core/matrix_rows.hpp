@@ -7,20 +7,20 @@
 
 #include "whirl/core/petsc.hpp"
 
-namespace whirl::solve {
+namespace whirl::core {
 
 /// Calls f(local row, columns, values, count) for all rows of this rank.
 template <class F>
 void for_rows(Mat m, F&& f) {
   PetscInt begin = 0, end = 0;
-  core::check(MatGetOwnershipRange(m, &begin, &end));
+  check(MatGetOwnershipRange(m, &begin, &end));
   for (PetscInt i = begin; i < end; ++i) {
     PetscInt count = 0;
     const PetscInt* columns = nullptr;
     const PetscScalar* values = nullptr;
-    core::check(MatGetRow(m, i, &count, &columns, &values));
+    check(MatGetRow(m, i, &count, &columns, &values));
     f(i - begin, columns, values, count);
-    core::check(MatRestoreRow(m, i, &count, &columns, &values));
+    check(MatRestoreRow(m, i, &count, &columns, &values));
   }
 }
 
@@ -43,4 +43,4 @@ void for_rows(Mat m, F&& f) {
 /// All rows of a small distributed matrix, on every rank. Collective.
 [[nodiscard]] Eigen::SparseMatrix<double> gather_matrix(Mat m);
 
-}  // namespace whirl::solve
+}  // namespace whirl::core
