@@ -48,7 +48,7 @@ Equations::Equations(problem::System& system, const problem::Drive& drive, Algeb
   x_ = core::duplicate(state_scale_.get());
   xdot_ = core::duplicate(state_scale_.get());
   if (thin_ || dense_is_cheaper(system)) {
-    point_ = std::make_unique<solve::ScaledPoint>(system, system.structure(), thin_);
+    point_ = std::make_unique<problem::ScaledPoint>(system, system.structure(), thin_);
     point_->refresh();
     f_.resize(system.size());
   }
@@ -169,7 +169,7 @@ void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
 }
 
 void Equations::residual(double t, const Eigen::VectorXd& u, const Eigen::VectorXd& udot, Eigen::VectorXd& f,
-                         solve::PointState* keep) {
+                         problem::PointState* keep) {
   ++residuals_;
   turn(t);
   if (keep)

@@ -8,8 +8,8 @@
 #include "transient/thin_inverse.hpp"
 #include "whirl/core/gate.hpp"
 #include "whirl/problem/drive.hpp"
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/problem/system.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/transient/integrator.hpp"
 
 namespace whirl::transient {
@@ -36,7 +36,7 @@ public:
   [[nodiscard]] core::LinearSolver make_solver(const std::string& prefix);
   /// x = matrix^-1 b; false if that failed.
   [[nodiscard]] bool solve(KSP ksp, Mat matrix, Vec b, Vec x);
-  [[nodiscard]] solve::ScaledPoint& point() { return *point_; }
+  [[nodiscard]] problem::ScaledPoint& point() { return *point_; }
   [[nodiscard]] const problem::Drive& drive() const { return drive_; }
   /// Sets the speed of the shaft at `t`, where it changes.
   void turn(double t);
@@ -51,7 +51,7 @@ public:
   void act(const Forces* forces) { forces_ = forces; }
   /// Of thin ones the same without PETSc; with `keep` the films' tangents stay in it.
   void residual(double t, const Eigen::VectorXd& u, const Eigen::VectorXd& udot, Eigen::VectorXd& f,
-                solve::PointState* keep = nullptr);
+                problem::PointState* keep = nullptr);
   /// j = alpha dF/du + sigma dF/d(du/dt)
   void jacobian(double t, Vec u, Vec udot, double alpha, double sigma, Mat j);
 
@@ -77,12 +77,12 @@ private:
   bool thin_ = false;
   double turned_ = 0;  // the speed that `point_` is at
   core::Vector state_scale_, residual_scale_, inverse_, x_, xdot_;
-  std::unique_ptr<solve::ScaledPoint> point_;
+  std::unique_ptr<problem::ScaledPoint> point_;
   Eigen::VectorXd u_, udot_, f_;
   Eigen::MatrixXd jx_, jxdot_;
   // Of thin ones: the point of the last residual and its tangents, and what matrices stand for.
   double time_ = 0;
-  solve::PointState at_;
+  problem::PointState at_;
   bool tangents_ = false;
   long residuals_ = 0, jacobians_ = 0;
   std::vector<std::pair<Mat, std::shared_ptr<ThinOperator>>> operators_;

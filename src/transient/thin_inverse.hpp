@@ -9,17 +9,17 @@
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/pivoted_lu.hpp"
 #include "whirl/core/sparse_lu.hpp"
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/problem/structure.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 
 namespace whirl::transient {
 
 /// A = alpha dF/du + sigma dF/d(du/dt) at one point, in scaled states and residuals.
 struct ThinOperator {
   double alpha = 1, sigma = 0;
-  double parameter = 0;  ///< of the system there
-  long version = 0;      ///< counts its changes
-  solve::PointState at;  ///< with tangents
+  double parameter = 0;    ///< of the system there
+  long version = 0;        ///< counts its changes
+  problem::PointState at;  ///< with tangents
 };
 
 /// x = A^-1 y by elimination of what hardly changes from step to step.
@@ -31,7 +31,7 @@ struct ThinOperator {
 class ThinInverse {
 public:
   /// `point` with sparse blocks and `structure` outlive this.
-  ThinInverse(const solve::ScaledPoint& point, const problem::BlockStructure& structure)
+  ThinInverse(const problem::ScaledPoint& point, const problem::BlockStructure& structure)
       : point_(point), structure_(structure) {}
 
   /// To |y - A x| <= tolerance |y|.
@@ -79,7 +79,7 @@ private:
   void prepare(const ThinOperator& a, Factors& f);
   [[nodiscard]] bool exact(const ThinOperator& a) const;
 
-  const solve::ScaledPoint& point_;
+  const problem::ScaledPoint& point_;
   const problem::BlockStructure& structure_;
   std::vector<std::unique_ptr<Factors>> kept_;
   Factors* now_ = nullptr;  // what was prepared:

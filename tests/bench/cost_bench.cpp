@@ -13,8 +13,8 @@
 #include "system/start.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/session.hpp"
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -122,7 +122,7 @@ std::pair<double, double> step(const system::Train& train) {
       check(KSPSolve(solver.get(), b.get(), y.get()));
     }
   });
-  solve::ScaledPoint p(s, s.structure());
+  problem::ScaledPoint p(s, s.structure());
   p.refresh();
   MatrixXd jx, jxdot;
   core::Matrix m;

@@ -12,7 +12,7 @@
 #include "film/gas_cases.hpp"
 #include "system/start.hpp"
 #include "whirl/core/session.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/transient/integrator.hpp"
@@ -98,9 +98,9 @@ double difference(const Run& a, const Run& b) {
 // dx/dt = -(dF/dx')^-1 F, the matrix as at `x`.
 class Explicit {
 public:
-  Explicit(solve::ScaledPoint& point, const problem::BlockStructure& structure, const VectorXd& x)
+  Explicit(problem::ScaledPoint& point, const problem::BlockStructure& structure, const VectorXd& x)
       : point_(point), n_(structure.size()), f_(x.size()) {
-    solve::PointState at;
+    problem::PointState at;
     const VectorXd rest = VectorXd::Zero(x.size());
     point.residual(0, x, rest, f_, at);
     rotor_ = Eigen::MatrixXd(point.thin_blocks().l1).inverse();
@@ -169,7 +169,7 @@ public:
   }
 
 private:
-  solve::ScaledPoint& point_;
+  problem::ScaledPoint& point_;
   Index n_;
   Eigen::MatrixXd rotor_;
   VectorXd films_, followers_, f_, rest_;
@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
   const core::Session session(1, argv);
   system::RotorSystem s(PETSC_COMM_SELF, machine(), speed);
   const core::Vector start = equilibrium(s);
-  solve::ScaledPoint point(s, s.structure(), true);
+  problem::ScaledPoint point(s, s.structure(), true);
   VectorXd x;
   {
     const core::ReadArray a(start.get());

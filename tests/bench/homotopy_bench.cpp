@@ -238,7 +238,7 @@ private:
   Homotopy& system_;
   bool by_structure_;
   Index n_;
-  solve::ScaledPoint point_, sparse_;
+  problem::ScaledPoint point_, sparse_;
   VectorXd still_, f_, inverse_;  // inverse_: of the only entry in each row of dF/d(dx/dt), at column_
   Eigen::VectorX<PetscInt> column_;
   core::Vector weights_;

@@ -24,7 +24,7 @@ namespace {
 solve::Cycle guess(int cells) {
   static const solve::Cycle coarse = [] {
     test::Brusselator s(PETSC_COMM_SELF, 8);
-    solve::ScaledPoint point(s, nullptr);
+    problem::ScaledPoint point(s, nullptr);
     solve::RungeKutta stepper(point, solve::classical());
     const int per_period = 240;
     const double period = 3.432;

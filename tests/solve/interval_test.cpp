@@ -40,7 +40,7 @@ void compare(int pairs, int eliminated) {
       }
       const double length = 0.3;
       const auto dense = solve::make_dense_interval(scheme, length, jx, jxdot);
-      const auto part = std::make_shared<solve::LinearPart>(scheme, length, solve::DenseBlocks{l1, l0, b, c});
+      const auto part = std::make_shared<solve::LinearPart>(scheme, length, problem::DenseBlocks{l1, l0, b, c});
       EXPECT_EQ(part->eliminated(), eliminated);
       const auto low = solve::make_low_rank_interval(part, tangents);
 

@@ -111,7 +111,7 @@ TEST(Shooting, EqualsCollocationAtRadauPoints) {
 TEST(Shooting, StepTangentsAreThoseOfTheDocument) {
   const double mu = 0.7, dt = 0.31;
   test::SmallSystem s(PETSC_COMM_SELF, 2, mu, 1, test::VanDerPol{});
-  solve::ScaledPoint point(s, nullptr);
+  problem::ScaledPoint point(s, nullptr);
   using Vector = Eigen::Vector2d;
   using Matrix = Eigen::Matrix2d;
   const auto f = [&](const Vector& u) { return Vector(u(1), mu * (1 - u(0) * u(0)) * u(1) - u(0)); };

@@ -11,8 +11,8 @@
 #include "support/film_of.hpp"
 #include "support/petsc_options.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -113,7 +113,7 @@ TEST(OwnStates, CondensedIntervalsAreTheDenseMatrix) {
     problem::BlockStructure* structure = s.structure();
     ASSERT_NE(structure, nullptr);
     ASSERT_EQ(structure->own().size(), 3U);
-    solve::ScaledPoint point(s, structure), plain(s, nullptr);
+    problem::ScaledPoint point(s, structure), plain(s, nullptr);
     const Eigen::Index n = s.size(), core = structure->size();
     EXPECT_EQ(core + s.own_states(), n);
     EXPECT_GT(s.own_states(), 12 + 13 + 10);
@@ -121,8 +121,8 @@ TEST(OwnStates, CondensedIntervalsAreTheDenseMatrix) {
       for (const int m : {1, 2, 3, 4, 5}) {
         const solve::Scheme scheme = solve::make_scheme(m, points);
         const double length = 1e-3;
-        std::vector<solve::PointState> kept(static_cast<std::size_t>(m));
-        std::vector<const solve::PointState*> at;
+        std::vector<problem::PointState> kept(static_cast<std::size_t>(m));
+        std::vector<const problem::PointState*> at;
         std::vector<MatrixXd> jx(kept.size()), jxdot(jx);
         for (int j = 0; j < m; ++j) {
           const auto k = static_cast<std::size_t>(j);
@@ -336,7 +336,7 @@ TEST(OwnStates, RatesOfDampedLinersSolveTheEquations) {
   system::Support one = support(Kind::compliant_short, false, 0.1, 20);
   damp(one);
   system::RotorSystem s(PETSC_COMM_SELF, train({one}), speed);
-  solve::ScaledPoint point(s, nullptr);
+  problem::ScaledPoint point(s, nullptr);
   VectorXd x = VectorXd::Zero(s.size()), f(s.size());
   x.head(4) << 0.1, 0.3, -0.2, 0.2;
   for (Eigen::Index k = 4; k < x.size(); ++k) x(k) = 1.1 + 0.2 * std::sin(1.7 * static_cast<double>(k));

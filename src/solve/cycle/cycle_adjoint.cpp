@@ -37,7 +37,7 @@ void CycleProblem::interval_transposed(Index i, const double* own, const VectorX
   const double length = interval_length(i) * period;
   VectorXd value(n_), slope(n_), d_parameter(n_), rate(n_), by_value, by_slope;
   MatrixXd jx, jxdot;
-  PointState at;
+  problem::PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
     interpolate(i, j, own, start, period, value, slope);
     const double angle = angle_at(i, scheme_.c(j));
@@ -70,7 +70,7 @@ MatrixXd CycleProblem::interval_tangent(Index i, const double* own, const Vector
                                         const MatrixXd& d_own, const MatrixXd& d_start) {
   VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), unused(n_);
   MatrixXd jx, jxdot, out(scheme_.degree * n_, d_own.cols());
-  PointState at;
+  problem::PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
     interpolate(i, j, own, start, period, value, slope);
     const double angle = angle_at(i, scheme_.c(j));

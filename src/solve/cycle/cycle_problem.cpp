@@ -225,14 +225,14 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
   const double h = interval_length(i);
   columns.resize(m * n_, borders_);
   std::vector<MatrixXd> jx(static_cast<std::size_t>(m)), jxdot(jx);
-  std::vector<const PointState*> points;
+  std::vector<const problem::PointState*> points;
   VectorXd d_parameter(n_), rate(n_);
   for (Index j = 0; j < m; ++j) {
     const auto jj = static_cast<std::size_t>(j);
     const double angle = angle_at(i, scheme_.c(j));
     interpolate(i, j, own, start, period, value_, slope_);
     if (structure_) {
-      PointState& at = kept_[static_cast<std::size_t>(i * m + j)];
+      problem::PointState& at = kept_[static_cast<std::size_t>(i * m + j)];
       if (!kept_valid_) point_.residual(angle, value_, slope_, rate, at);
       point_.parameter_derivative(angle, at, d_parameter);
       point_.times_rates(at, slope_, rate);
@@ -248,7 +248,7 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
   const double rounded = std::round(h * 1e12) / 1e12;
   std::vector<MatrixXd> tangents;
   if (way_ != Way::own_states)
-    for (const PointState* at : points) tangents.push_back(at->films.d_inputs);
+    for (const problem::PointState* at : points) tangents.push_back(at->films.d_inputs);
   if (way_ == Way::sparse) {
     auto& part = sparse_parts_[rounded];
     if (!part) part = make_sparse_part(scheme_, h * period, thin_);
@@ -289,7 +289,7 @@ void CycleProblem::linearise(Vec u, Vec row) {
     }
     if (way_ != Way::sparse) return;
     run_.thin = ThinRun{&thin_, &scheme_, &mesh_, period, {}};
-    for (const PointState& at : kept_) run_.thin->tangents.push_back(&at.films.d_inputs);
+    for (const problem::PointState& at : kept_) run_.thin->tangents.push_back(&at.films.d_inputs);
   });
   // The same solution is often linearised again with another row.
   if (!known) keep(ua, before, border);

@@ -23,13 +23,13 @@ constexpr int most_laps = 60;
 
 }  // namespace
 
-FilmMarch::FilmMarch(const Scheme& scheme, problem::BlockStructure& structure, ScaledPoint& point)
+FilmMarch::FilmMarch(const Scheme& scheme, problem::BlockStructure& structure, problem::ScaledPoint& point)
     : scheme_(scheme), structure_(structure), point_(point), at_(static_cast<std::size_t>(scheme.degree)) {
   for (const problem::OwnStates& film : structure.own()) {
     blocks_.push_back(film.settles ? make_own_block(scheme, film) : nullptr);
     core::require(!film.settles || blocks_.back()->shape().separators == 0, "a film that settles is a band");
   }
-  for (const PointState& at : at_) points_.push_back(&at);
+  for (const problem::PointState& at : at_) points_.push_back(&at);
   rows_.resize(point.own_states(), scheme.degree);
   row_.resize(point.size());
 }

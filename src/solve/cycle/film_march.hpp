@@ -17,7 +17,7 @@ namespace whirl::solve {
 class FilmMarch {
 public:
   /// All outlive this.
-  FilmMarch(const Scheme& scheme, problem::BlockStructure& structure, ScaledPoint& point);
+  FilmMarch(const Scheme& scheme, problem::BlockStructure& structure, problem::ScaledPoint& point);
   ~FilmMarch();
   /// Moves these states at the nodes `own` [n x m] of an interval of length `length` (s) that begins at `start` [n],
   /// all scaled; returns how far they move at its end. Throws core::DomainError, core::NotConverged. Not collective.
@@ -28,10 +28,10 @@ private:
 
   const Scheme& scheme_;
   problem::BlockStructure& structure_;
-  ScaledPoint& point_;
+  problem::ScaledPoint& point_;
   std::vector<std::unique_ptr<OwnBlock>> blocks_;  // null for films that do not settle
-  std::vector<PointState> at_;
-  std::vector<const PointState*> points_;
+  std::vector<problem::PointState> at_;
+  std::vector<const problem::PointState*> points_;
   Eigen::MatrixXd rows_;  // [own states x m]
   Eigen::VectorXd value_, slope_, row_, film_;
   Eigen::MatrixXd force_;

@@ -45,7 +45,8 @@ Index single(const MatrixXd& a, Index row) {
 
 }  // namespace
 
-LinearPart::LinearPart(const Scheme& sc, double len, DenseBlocks blocks) : ThinPart(sc, len, std::move(blocks)) {
+LinearPart::LinearPart(const Scheme& sc, double len, problem::DenseBlocks blocks)
+    : ThinPart(sc, len, std::move(blocks)) {
   find_rates();
   factorise();
   const Index m = scheme.degree;

@@ -66,7 +66,7 @@ void ModeComposition::compose(const Run& run) {
   MatrixXd mean;
   gather_tangents(mean);
   core::agree(run.comm, [&] {
-    const ThinBlocks& k = *run.thin->blocks;
+    const problem::ThinBlocks& k = *run.thin->blocks;
     Pencil::Matrix held = k.l0 - Pencil::Matrix(k.b * Pencil::Matrix(mean.sparseView()) * k.c);
     held.makeCompressed();
     pencil_.compute(k.l1, held, modes_.lambda.segment(rank_ * modes_.lanes, modes_.lanes) / run.thin->period);

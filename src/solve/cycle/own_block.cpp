@@ -13,8 +13,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 template <int M>
-void OwnBand<M>::read(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                      Index first) {
+void OwnBand<M>::read(const std::vector<const problem::PointState*>& points, std::size_t index,
+                      const problem::ScaledPoint& scales, Index first) {
   const Index width = shape_.width();
   std::fill(by_state_.begin(), by_state_.end(), 0.0);
   std::fill(by_rate_.begin(), by_rate_.end(), 0.0);
@@ -131,8 +131,8 @@ void OwnBand<M>::find_border() {
 }
 
 template <int M>
-void OwnBand<M>::factorise_alone(const std::vector<const PointState*>& points, std::size_t index,
-                                 const ScaledPoint& scales, Index first, double length) {
+void OwnBand<M>::factorise_alone(const std::vector<const problem::PointState*>& points, std::size_t index,
+                                 const problem::ScaledPoint& scales, Index first, double length) {
   length_ = length;
   slope_ = scheme_.slope.rightCols(m()) / length;
   read(points, index, scales, first);
@@ -140,8 +140,8 @@ void OwnBand<M>::factorise_alone(const std::vector<const PointState*>& points, s
 }
 
 template <int M>
-void OwnBand<M>::factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                           Index first, double length) {
+void OwnBand<M>::factorise(const std::vector<const problem::PointState*>& points, std::size_t index,
+                           const problem::ScaledPoint& scales, Index first, double length) {
   factorise_alone(points, index, scales, first, length);
   find_border();
 }

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/problem/structure.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 
 namespace whirl::solve {
@@ -46,11 +46,11 @@ class OwnBlock {
 public:
   virtual ~OwnBlock() = default;
   /// From the tangents of film `index` at the points; `first` is its first state among all states.
-  virtual void factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                         Eigen::Index first, double length) = 0;
+  virtual void factorise(const std::vector<const problem::PointState*>& points, std::size_t index,
+                         const problem::ScaledPoint& scales, Eigen::Index first, double length) = 0;
   /// The same for eliminate() alone, of a film without separators.
-  virtual void factorise_alone(const std::vector<const PointState*>& points, std::size_t index,
-                               const ScaledPoint& scales, Eigen::Index first, double length) = 0;
+  virtual void factorise_alone(const std::vector<const problem::PointState*>& points, std::size_t index,
+                               const problem::ScaledPoint& scales, Eigen::Index first, double length) = 0;
 
   /// Inputs that occur at all, counted from the film's first one.
   [[nodiscard]] const std::vector<Eigen::Index>& active() const { return active_; }

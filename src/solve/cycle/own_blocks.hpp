@@ -24,10 +24,10 @@ public:
     input_.resize(static_cast<std::size_t>(shape_.count * degree_ * inputs_));
     factor_.resize(static_cast<std::size_t>(shape_.interior() * shape_.width() * degree_ * degree_));
   }
-  void factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                 Index first, double length) override;
-  void factorise_alone(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                       Index first, double length) override;
+  void factorise(const std::vector<const problem::PointState*>& points, std::size_t index,
+                 const problem::ScaledPoint& scales, Index first, double length) override;
+  void factorise_alone(const std::vector<const problem::PointState*>& points, std::size_t index,
+                       const problem::ScaledPoint& scales, Index first, double length) override;
   void eliminate(Index columns, double* y, MatrixXd& force) const override;
   void substitute(Index columns, double* y, const MatrixXd& eta, const MatrixXd& separators) const override;
   void start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const override;
@@ -87,7 +87,8 @@ private:
     for (Index l = 0; l < m(); ++l)
       for (Index j = 0; j < m(); ++j) out[l * m() + j] = value_(j, l) * s[j] + slope_(j, l) * r[j];
   }
-  void read(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales, Index first);
+  void read(const std::vector<const problem::PointState*>& points, std::size_t index,
+            const problem::ScaledPoint& scales, Index first);
   void factorise_band();
   void find_border();
   // force += (F value + F' slope) v for v [m x columns] of one state.

@@ -25,7 +25,7 @@ using Eigen::VectorXd;
 class OwnInterval final : public Interval {
 public:
   OwnInterval(std::shared_ptr<const LinearPart> part, const std::vector<problem::OwnStates>& films,
-              const ScaledPoint& scales, const std::vector<const PointState*>& points);
+              const problem::ScaledPoint& scales, const std::vector<const problem::PointState*>& points);
   void solve(MatrixXd& y) const override;
   void solve_transposed(MatrixXd& y) const override;
   MatrixXd start(const MatrixXd& x) const override;
@@ -61,7 +61,7 @@ private:
 };
 
 OwnInterval::OwnInterval(std::shared_ptr<const LinearPart> part, const std::vector<problem::OwnStates>& films,
-                         const ScaledPoint& scales, const std::vector<const PointState*>& points)
+                         const problem::ScaledPoint& scales, const std::vector<const problem::PointState*>& points)
     : part_(std::move(part)), films_(films), n_(scales.size()), own_(scales.own_states()) {
   const LinearPart& p = *part_;
   const Index m = degree();
@@ -333,8 +333,9 @@ MatrixXd OwnInterval::block(int j, int l) const {
 }  // namespace
 
 std::unique_ptr<Interval> make_own_interval(std::shared_ptr<const LinearPart> part,
-                                            const std::vector<problem::OwnStates>& films, const ScaledPoint& scales,
-                                            const std::vector<const PointState*>& points) {
+                                            const std::vector<problem::OwnStates>& films,
+                                            const problem::ScaledPoint& scales,
+                                            const std::vector<const problem::PointState*>& points) {
   return std::make_unique<OwnInterval>(std::move(part), films, scales, points);
 }
 

@@ -171,7 +171,8 @@ std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPar
   return std::make_unique<ThinInterval<LinearPart>>(std::move(part), std::move(tangents));
 }
 
-std::shared_ptr<const SparsePart> make_sparse_part(const Scheme& scheme, double length, const ThinBlocks& blocks) {
+std::shared_ptr<const SparsePart> make_sparse_part(const Scheme& scheme, double length,
+                                                   const problem::ThinBlocks& blocks) {
   return std::make_shared<SparsePart>(scheme, length, blocks);
 }
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/problem/system.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 
 namespace whirl::solve {
 
@@ -60,13 +60,13 @@ private:
   bool find_places();
   void follow_rates();
 
-  ScaledPoint point_;
+  problem::ScaledPoint point_;
   const std::vector<problem::OwnStates>& own_;
   Eigen::Index n_;  // coordinates, without own states
   std::vector<RateFilm> films_;
   Eigen::Index values_ = 0, reach_ = 0;
   Eigen::MatrixXd mass_, lead_, linear_;  // L1^-1, Q and -L1^-1 L0
-  PointState at_;
+  problem::PointState at_;
   Eigen::VectorXd f_, inverse_;   // inverse_: -1/R in scaled states per SI of the residual [k]
   Eigen::MatrixXd inputs_;        // df/dw C
   std::vector<double> rates_;     // R of all films at the last point

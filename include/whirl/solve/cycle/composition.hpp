@@ -9,15 +9,15 @@
 #include <optional>
 #include <vector>
 
+#include "whirl/problem/thin_blocks.hpp"
 #include "whirl/solve/cycle/interval.hpp"
-#include "whirl/solve/cycle/thin_blocks.hpp"
 
 namespace whirl::solve {
 
 /// What a run is made of where its system is linear but for thin forces, to those who do not want it interval by
 /// interval. The blocks belong to the problem.
 struct ThinRun {
-  const ThinBlocks* blocks;
+  const problem::ThinBlocks* blocks;
   const Scheme* scheme;
   const std::vector<double>* mesh;               ///< of the whole cycle
   double period;                                 ///< s

@@ -7,11 +7,11 @@
 #include <memory>
 #include <vector>
 
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 #include "whirl/solve/cycle/interval.hpp"
 #include "whirl/solve/cycle/periodic_problem.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/newton/adjoint.hpp"
 
 namespace whirl::solve {
@@ -148,7 +148,7 @@ protected:
   [[nodiscard]] double angle_at(Eigen::Index i, double t) const;
   [[nodiscard]] double interval_length(Eigen::Index i) const;
   [[nodiscard]] problem::System& system() { return system_; }
-  [[nodiscard]] ScaledPoint& point() { return point_; }
+  [[nodiscard]] problem::ScaledPoint& point() { return point_; }
 
 private:
   void layout(std::vector<double> mesh);
@@ -181,7 +181,7 @@ private:
   problem::BlockStructure* structure_;
   CycleOptions options_;
   Way way_;
-  ScaledPoint point_;
+  problem::ScaledPoint point_;
   Scheme scheme_;
   Eigen::Index n_, borders_;
   double period_scale_ = 0;
@@ -193,14 +193,14 @@ private:
   double phase_offset_ = 0;
 
   // What residual() or linearise() kept of the points, which spares linearise() at the same u their evaluation.
-  std::vector<PointState> kept_;
+  std::vector<problem::PointState> kept_;
   Eigen::VectorXd kept_u_, kept_before_, kept_border_;
   bool kept_valid_ = false;
   Eigen::VectorXd value_, slope_;  // work space
 
   // The linearisation: linear parts by length, intervals, border columns and added rows, and how they are joined.
   std::map<double, std::shared_ptr<const LinearPart>> parts_;
-  ThinBlocks thin_;
+  problem::ThinBlocks thin_;
   std::map<double, std::shared_ptr<const SparsePart>> sparse_parts_;
   Run run_;
   std::unique_ptr<Composition> composition_;

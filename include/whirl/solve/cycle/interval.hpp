@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/solve/cycle/linear_part.hpp"
-#include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 
 namespace whirl::solve {
@@ -47,7 +47,7 @@ public:
 /// What intervals of one length share where the blocks are sparse. Keeps a reference to the scheme and to the blocks.
 class SparsePart;
 [[nodiscard]] std::shared_ptr<const SparsePart> make_sparse_part(const Scheme& scheme, double length,
-                                                                 const ThinBlocks& blocks);
+                                                                 const problem::ThinBlocks& blocks);
 /// Low-rank interval of such a part, O(n) to solve; nothing is factorised before the first solution.
 [[nodiscard]] std::unique_ptr<Interval> make_sparse_interval(std::shared_ptr<const SparsePart> part,
                                                              std::vector<Eigen::MatrixXd> tangents);
@@ -56,7 +56,7 @@ class SparsePart;
 /// to factorise, to solve and to carry.
 [[nodiscard]] std::unique_ptr<Interval> make_own_interval(std::shared_ptr<const LinearPart> part,
                                                           const std::vector<problem::OwnStates>& films,
-                                                          const ScaledPoint& scales,
-                                                          const std::vector<const PointState*>& points);
+                                                          const problem::ScaledPoint& scales,
+                                                          const std::vector<const problem::PointState*>& points);
 
 }  // namespace whirl::solve

@@ -5,18 +5,18 @@
 #include <vector>
 
 #include "whirl/core/dense_lu.hpp"
+#include "whirl/problem/thin_blocks.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
-#include "whirl/solve/cycle/thin_blocks.hpp"
 
 namespace whirl::solve {
 
 /// What all intervals of one length have in common where F = L1 xdot + L0 x - B f(C x): the blocks, dense or sparse, n
 /// states, r forces, w inputs.
 template <class Matrix>
-struct ThinPart : LinearBlocks<Matrix> {
+struct ThinPart : problem::LinearBlocks<Matrix> {
   /// Keeps a reference to the scheme and copies of the blocks.
-  ThinPart(const Scheme& sc, double len, LinearBlocks<Matrix> all)
-      : LinearBlocks<Matrix>(std::move(all)),
+  ThinPart(const Scheme& sc, double len, problem::LinearBlocks<Matrix> all)
+      : problem::LinearBlocks<Matrix>(std::move(all)),
         scheme(sc),
         length(len),
         n(this->l1.rows()),
@@ -59,7 +59,7 @@ struct ThinPart : LinearBlocks<Matrix> {
 /// eliminated exactly.
 class LinearPart : public ThinPart<Eigen::MatrixXd> {
 public:
-  LinearPart(const Scheme& scheme, double length, DenseBlocks blocks);
+  LinearPart(const Scheme& scheme, double length, problem::DenseBlocks blocks);
 
   Eigen::MatrixXd w00, y, vy;   ///< W00 [mn x n], Y [mn x mr], V Y [mw x mr]
   Eigen::MatrixXd free;         ///< -W0^-1 W00 [mn x n]

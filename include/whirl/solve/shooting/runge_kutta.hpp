@@ -1,7 +1,7 @@
 #pragma once
 // One Runge-Kutta step on F(angle, x, dx/dt) = 0 with its exact derivatives, dense.
 
-#include "whirl/solve/cycle/scaled_point.hpp"
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/solve/shooting/tableau.hpp"
 
 namespace whirl::solve {
@@ -9,7 +9,7 @@ namespace whirl::solve {
 /// x_1 = phi(x_0; H, p), in scaled states.
 class RungeKutta {
 public:
-  RungeKutta(ScaledPoint& point, Tableau tableau) : point_(point), tableau_(std::move(tableau)) {}
+  RungeKutta(problem::ScaledPoint& point, Tableau tableau) : point_(point), tableau_(std::move(tableau)) {}
   [[nodiscard]] const Tableau& tableau() const { return tableau_; }
 
   /// Carries x [n] over one step of `length` H [s] in which the shaft turns by `d_angle`. If `tangents` is not null, it
@@ -25,7 +25,7 @@ private:
   void solve_coupled(double angle, double d_angle, double length, const Eigen::VectorXd& x, Eigen::MatrixXd& slopes);
   [[nodiscard]] Eigen::MatrixXd tangents_of(double angle, double d_angle, double length, const Eigen::VectorXd& x,
                                             const Eigen::MatrixXd& slopes);
-  ScaledPoint& point_;
+  problem::ScaledPoint& point_;
   Tableau tableau_;
 };
 

@@ -1,10 +1,10 @@
-#include "whirl/solve/cycle/scaled_point.hpp"
+#include "whirl/problem/scaled_point.hpp"
 
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/matrix_rows.hpp"
 
-namespace whirl::solve {
+namespace whirl::problem {
 namespace {
 
 using core::check;
@@ -19,25 +19,23 @@ VectorXd to_eigen(Vec v) {
 }
 
 // out = diag(rows) block diag(columns)
-void scale(const problem::SparseBlock& block, const VectorXd& rows, const VectorXd& columns, MatrixXd& out) {
+void scale(const SparseBlock& block, const VectorXd& rows, const VectorXd& columns, MatrixXd& out) {
   out.setZero(block.rows(), block.cols());
   for (Index j = 0; j < block.cols(); ++j)
-    for (problem::SparseBlock::InnerIterator it(block, j); it; ++it)
-      out(it.row(), j) = rows(it.row()) * it.value() * columns(j);
+    for (SparseBlock::InnerIterator it(block, j); it; ++it) out(it.row(), j) = rows(it.row()) * it.value() * columns(j);
 }
 
-void scale(const problem::SparseBlock& block, const VectorXd& rows, const VectorXd& columns,
-           problem::SparseBlock& out) {
+void scale(const SparseBlock& block, const VectorXd& rows, const VectorXd& columns, SparseBlock& out) {
   out = block;
   for (Index j = 0; j < out.cols(); ++j)
-    for (problem::SparseBlock::InnerIterator it(out, j); it; ++it) it.valueRef() *= rows(it.row()) * columns(j);
+    for (SparseBlock::InnerIterator it(out, j); it; ++it) it.valueRef() *= rows(it.row()) * columns(j);
 }
 
 }  // namespace
 
-ScaledPoint::ScaledPoint(problem::System& system, problem::BlockStructure* structure, bool sparse)
+ScaledPoint::ScaledPoint(System& system, BlockStructure* structure, bool sparse)
     : system_(system), structure_(structure), sparse_(sparse && structure) {
-  core::require(core::size_of(system.comm()) == 1, "a point of a cycle needs the whole system on one rank");
+  core::require(core::size_of(system.comm()) == 1, "a scaled point needs the whole system on one rank");
   x_ = core::make_vector(system.comm(), system.size(), PETSC_DETERMINE);
   xdot_ = core::duplicate(x_.get());
   f_ = core::duplicate(x_.get());
@@ -129,7 +127,7 @@ void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Re
   with_blocks([&](const auto& blocks) { out.head(n).noalias() = blocks.l1 * v.head(n); });
   out.tail(own_states()).setZero();
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
-    const problem::OwnStates& film = structure_->own()[i];
+    const OwnStates& film = structure_->own()[i];
     const Eigen::MatrixXd& forces = at.films.own[i].force_rates;
     const Index first = n + film.first;
     if (forces.rows() > 0)
@@ -155,8 +153,8 @@ void ScaledPoint::times(const PointState& at, const VectorXd& a, const VectorXd&
   });
   VectorXd forces = at.films.d_inputs * inputs;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
-    const problem::OwnStates& film = structure_->own()[i];
-    const problem::OwnTangents& t = at.films.own[i];
+    const OwnStates& film = structure_->own()[i];
+    const OwnTangents& t = at.films.own[i];
     const Index first = n + film.first;
     const VectorXd s = a.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count));
     forces.segment(film.first_force, film.forces) += t.forces * s;
@@ -179,8 +177,8 @@ void ScaledPoint::times_transposed(const PointState& at, const Eigen::Ref<const 
   });
   VectorXd inputs = at.films.d_inputs.transpose() * forces;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
-    const problem::OwnStates& film = structure_->own()[i];
-    const problem::OwnTangents& t = at.films.own[i];
+    const OwnStates& film = structure_->own()[i];
+    const OwnTangents& t = at.films.own[i];
     const Index first = n + film.first;
     const VectorXd rows = y.segment(first, film.count).cwiseQuotient(residual_scale_.segment(first, film.count));
     inputs.segment(film.first_input, film.inputs) += t.inputs * rows;
@@ -210,8 +208,8 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
   jx.topLeftCorner(n, n).noalias() -= all.b * (at.films.d_inputs * all.c);
   jxdot.topLeftCorner(n, n) = all.l1;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
-    const problem::OwnStates& film = structure_->own()[i];
-    const problem::OwnTangents& t = at.films.own[i];
+    const OwnStates& film = structure_->own()[i];
+    const OwnTangents& t = at.films.own[i];
     const Index first = n + film.first;
     const auto rows = residual_scale_.segment(first, film.count).cwiseInverse().asDiagonal();
     jx.block(first, 0, film.count, n).noalias() =
@@ -222,8 +220,7 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
       jxdot.block(0, first, n, film.count).noalias() = -all.b.middleCols(film.first_force, film.forces) *
                                                        t.force_rates *
                                                        state_scale_.segment(first, film.count).asDiagonal();
-    const auto add = [&](const std::vector<problem::EntryPlace>& places, const std::vector<double>& values,
-                         MatrixXd& out) {
+    const auto add = [&](const std::vector<EntryPlace>& places, const std::vector<double>& values, MatrixXd& out) {
       for (std::size_t e = 0; e < places.size(); ++e) {
         const Index row = first + places[e].row, column = first + places[e].column;
         out(row, column) += values[e] * state_scale_(column) / residual_scale_(row);
@@ -270,4 +267,4 @@ VectorXd ScaledPoint::rate(double angle, const VectorXd& x) {
   return rate;
 }
 
-}  // namespace whirl::solve
+}  // namespace whirl::problem

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-namespace whirl::solve {
+namespace whirl::problem {
 
 /// L1, L0 [n x n], B [n x r], C [w x n] of F = L1 xdot + L0 x - l - B f(C x).
 template <class Matrix>
@@ -14,4 +14,4 @@ struct LinearBlocks {
 using DenseBlocks = LinearBlocks<Eigen::MatrixXd>;
 using ThinBlocks = LinearBlocks<Eigen::SparseMatrix<double>>;
 
-}  // namespace whirl::solve
+}  // namespace whirl::problem

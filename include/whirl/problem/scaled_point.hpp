@@ -1,18 +1,18 @@
 #pragma once
-// F and its derivatives at one point of a cycle, scaled, for a system that lives on one rank.
+// F and its derivatives at one point, scaled, for a system that lives on one rank.
 
 #include <Eigen/Core>
 
 #include "whirl/problem/structure.hpp"
 #include "whirl/problem/system.hpp"
-#include "whirl/solve/cycle/thin_blocks.hpp"
+#include "whirl/problem/thin_blocks.hpp"
 
-namespace whirl::solve {
+namespace whirl::problem {
 
 /// What is kept of one point between the residual and its linearisation, by systems that tell their structure.
 struct PointState {
   Eigen::VectorXd value, rate;  ///< (x, s) and its rates in SI [n]
-  problem::Films films;         ///< with tangents, in SI
+  Films films;                  ///< with tangents, in SI
 };
 
 /// F/residual_scale as a function of x/state_scale and (dx/dt)/state_scale; by the system's structure where it has one,
@@ -21,7 +21,7 @@ class ScaledPoint {
 public:
   /// `system` lives on a communicator of size 1 and outlives this; `structure` may be null. With `sparse` the blocks of
   /// the structure stay sparse; small machines are quicker with dense ones.
-  ScaledPoint(problem::System& system, problem::BlockStructure* structure, bool sparse = false);
+  ScaledPoint(System& system, BlockStructure* structure, bool sparse = false);
 
   [[nodiscard]] Eigen::Index size() const { return state_scale_.size(); }
   /// Own states of films as the structure tells them; they stand behind all others.
@@ -69,8 +69,8 @@ private:
     return sparse_ ? work(thin_) : work(dense_);
   }
 
-  problem::System& system_;
-  problem::BlockStructure* structure_;
+  System& system_;
+  BlockStructure* structure_;
   bool sparse_;
   Eigen::VectorXd state_scale_, residual_scale_;
   Eigen::VectorXd load_, inputs_, d_parameter_;  // work space
@@ -81,4 +81,4 @@ private:
   core::Matrix matrix_;
 };
 
-}  // namespace whirl::solve
+}  // namespace whirl::problem
