@@ -15,7 +15,7 @@
 #include "whirl/problem/scaled_point.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
 using Eigen::Index;

@@ -12,7 +12,7 @@
 #include "whirl/core/session.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
 

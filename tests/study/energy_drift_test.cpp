@@ -7,7 +7,7 @@
 
 #include "whirl/problem/structure.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
 

@@ -8,7 +8,7 @@
 #include "film/gas_cases.hpp"
 #include "support/finite_rotor.hpp"
 #include "support/train_system.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
 

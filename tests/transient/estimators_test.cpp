@@ -8,7 +8,7 @@
 #include <random>
 
 #include "whirl/core/petsc.hpp"
-#include "whirl/transient/estimators.hpp"
+#include "whirl/transient/analysis/estimators.hpp"
 
 using namespace whirl::transient;
 

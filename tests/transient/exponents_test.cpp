@@ -4,8 +4,8 @@
 
 #include "solve/cycle_systems.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
-#include "whirl/transient/exponents.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/analysis/exponents.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
 using test::SmallSystem;

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "support/small_system.hpp"
-#include "whirl/transient/estimators.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/analysis/estimators.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
 using namespace whirl::transient;

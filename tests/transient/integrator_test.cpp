@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "solve/cycle_systems.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
 using problem::Drive;

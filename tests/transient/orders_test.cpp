@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "whirl/core/error.hpp"
-#include "whirl/transient/orders.hpp"
-#include "whirl/transient/spectrum.hpp"
+#include "whirl/transient/analysis/orders.hpp"
+#include "whirl/transient/analysis/spectrum.hpp"
 
 using namespace whirl::transient;
 

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "solve/cycle_systems.hpp"
-#include "whirl/transient/integrator.hpp"
-#include "whirl/transient/rotation.hpp"
-#include "whirl/transient/section.hpp"
+#include "whirl/transient/analysis/rotation.hpp"
+#include "whirl/transient/steps/integrator.hpp"
+#include "whirl/transient/steps/section.hpp"
 
 using namespace whirl;
 using test::two_pi;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "solve/cycle_systems.hpp"
-#include "whirl/transient/integrator.hpp"
-#include "whirl/transient/section.hpp"
+#include "whirl/transient/steps/integrator.hpp"
+#include "whirl/transient/steps/section.hpp"
 
 using namespace whirl;
 using test::SmallSystem;

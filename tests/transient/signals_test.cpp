@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "whirl/core/petsc.hpp"
-#include "whirl/transient/classify.hpp"
-#include "whirl/transient/spectrum.hpp"
+#include "whirl/transient/analysis/classify.hpp"
+#include "whirl/transient/analysis/spectrum.hpp"
 
 using namespace whirl::transient;
 

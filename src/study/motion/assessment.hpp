@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "whirl/study/study.hpp"
-#include "whirl/transient/orders.hpp"
-#include "whirl/transient/section.hpp"
+#include "whirl/transient/analysis/orders.hpp"
+#include "whirl/transient/steps/section.hpp"
 
 namespace whirl::study {
 

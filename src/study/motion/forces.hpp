@@ -7,7 +7,7 @@
 
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/transient/force.hpp"
+#include "whirl/transient/steps/force.hpp"
 
 namespace whirl::study {
 

@@ -10,7 +10,7 @@
 #include "study/motion/forces.hpp"
 #include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 namespace whirl::study {
 namespace {

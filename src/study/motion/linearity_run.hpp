@@ -11,8 +11,8 @@
 #include "study/motion/linearity.hpp"
 #include "whirl/solve/newton/frequency_solver.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/transient/estimators.hpp"
-#include "whirl/transient/force.hpp"
+#include "whirl/transient/analysis/estimators.hpp"
+#include "whirl/transient/steps/force.hpp"
 
 namespace whirl::study {
 

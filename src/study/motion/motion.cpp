@@ -23,7 +23,7 @@
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/study/stop.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 namespace whirl::study {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "study/motion/assessment.hpp"
 #include "study/motion/forces.hpp"
-#include "whirl/transient/scheme.hpp"
+#include "whirl/transient/steps/scheme.hpp"
 
 namespace whirl::study {
 

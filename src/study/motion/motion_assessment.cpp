@@ -9,7 +9,7 @@
 #include "study/motion/motion_record.hpp"
 #include "study/motion/short_time.hpp"
 #include "study/stored_vector.hpp"
-#include "whirl/transient/rotation.hpp"
+#include "whirl/transient/analysis/rotation.hpp"
 
 namespace whirl::study {
 namespace {

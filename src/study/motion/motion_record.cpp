@@ -8,7 +8,7 @@
 
 #include "study/stored_vector.hpp"
 #include "whirl/io/table.hpp"
-#include "whirl/transient/spectrum.hpp"
+#include "whirl/transient/analysis/spectrum.hpp"
 
 namespace whirl::study {
 namespace {

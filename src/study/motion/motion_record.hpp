@@ -9,9 +9,9 @@
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/system/plant.hpp"
-#include "whirl/transient/classify.hpp"
-#include "whirl/transient/exponents.hpp"
-#include "whirl/transient/spectrum.hpp"
+#include "whirl/transient/analysis/classify.hpp"
+#include "whirl/transient/analysis/exponents.hpp"
+#include "whirl/transient/analysis/spectrum.hpp"
 
 namespace whirl::study {
 

@@ -9,7 +9,7 @@
 #include "study/layout.hpp"
 #include "study/motion/motion.hpp"
 #include "whirl/system/plant.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 namespace whirl::study {
 

@@ -27,7 +27,7 @@
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/study/stop.hpp"
-#include "whirl/transient/integrator.hpp"
+#include "whirl/transient/steps/integrator.hpp"
 
 namespace whirl::study {
 namespace {

@@ -1,0 +1,185 @@
+#include "transient/steps/thin_steps.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "transient/steps/stages.hpp"
+
+namespace whirl::transient {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// Newton's method ends where its next change would be this part of the tolerance of a step.
+constexpr double newton_part = 1e-2;
+constexpr double rounding_part = 1e-13;  // of the states' scale: no change is smaller
+constexpr int most_changes = 10;
+constexpr double slow_ratio = 0.3;  // convergence that pays for new tangents
+// Of one stage. Where a film's equations have a kink, as that of an orifice between sonic and still gas has, factors
+// from one side of it may not serve on the other.
+constexpr int most_renewals = 4;
+constexpr std::size_t most_nodes = 5;
+
+}  // namespace
+
+ThinSteps::ThinSteps(Equations& equations, const solve::Tableau& tableau, double tolerance)
+    : equations_(equations),
+      tableau_(tableau),
+      tolerance_(tolerance),
+      estimate_(tableau.b - embedded_weights(tableau)),
+      continuous_(continuous_weights(tableau)),
+      inverse_(equations.point(), *equations.system().structure()) {
+  const auto n = static_cast<Index>(equations.system().size());
+  for (VectorXd* v : {&start_, &weights_, &known_, &value_, &slope_, &f_, &change_, &end_}) v->resize(n);
+  slopes_.resize(n, tableau.stages());
+  before_.resize(n, tableau.stages());
+  for (Index i = 0; i < tableau.stages(); ++i) stages_.push_back(equations.make_state());
+}
+
+void ThinSteps::forget() {
+  length_ = length_before_ = 0;
+  has_tangents_ = careful_ = false;
+  rate_ = 1;
+  inverse_.forget();
+}
+
+double ThinSteps::norm(const VectorXd& v) const {
+  return std::sqrt(v.cwiseProduct(weights_).squaredNorm() / static_cast<double>(v.size()));
+}
+
+// By the polynomial through the slopes that lie nearest in time, of this step and of the last one.
+void ThinSteps::predict(Index i, double length) {
+  struct Node {
+    double at;
+    const double* slope;
+  };
+  std::vector<Node> nodes;
+  const double wanted = tableau_.c(i);
+  for (Index j = 0; j < i; ++j) nodes.push_back({tableau_.c(j), slopes_.col(j).data()});
+  for (Index j = 0; length_before_ > 0 && j < tableau_.stages(); ++j)
+    nodes.push_back({(tableau_.c(j) - 1) * length_before_ / length, before_.col(j).data()});
+  std::stable_sort(nodes.begin(), nodes.end(),
+                   [&](const Node& a, const Node& b) { return std::abs(a.at - wanted) < std::abs(b.at - wanted); });
+  if (nodes.size() > most_nodes) nodes.erase(nodes.begin() + most_nodes, nodes.end());
+  slope_.setZero();
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    double weight = 1;
+    for (std::size_t l = 0; l < nodes.size(); ++l)
+      if (l != k) weight *= (wanted - nodes[l].at) / (nodes[k].at - nodes[l].at);
+    slope_ += weight * Eigen::Map<const VectorXd>(nodes[k].slope, slope_.size());
+  }
+}
+
+bool ThinSteps::solve_stage(Index i, double time, double length) {
+  const double own = length * tableau_.a(i, i), at = time + length * tableau_.c(i);
+  const bool cheap = equations_.point().own_states() == 0;
+  known_ = start_;
+  if (i > 0) known_.noalias() += length * (slopes_.leftCols(i) * tableau_.a.row(i).head(i).transpose());
+  predict(i, length);
+  value_ = known_ + own * slope_;
+  equations_.turn(at);
+  // After a failure by Newton's method itself, with a matrix of its own for each change.
+  const bool careful = careful_ && !cheap;
+  // Of the same step in time and speed as the matrix, or nearly so.
+  bool renew = cheap || careful || !has_tangents_ || !inverse_.fits(own, equations_.system().parameter());
+  int renewals = 0;
+  double last = 0, rate = std::pow(std::max(rate_, 1e-4), 0.8);
+  for (int k = 0; k < most_changes; ++k) {
+    equations_.residual(at, value_, slope_, f_, renew ? &operator_.at : nullptr);
+    if (renew) {
+      ++tangents_;
+      operator_.alpha = own;
+      operator_.sigma = 1;
+      operator_.parameter = equations_.system().parameter();
+      ++operator_.version;
+      if (cheap)
+        inverse_.place(operator_);
+      else
+        inverse_.factorise_at(operator_);
+      has_tangents_ = true;
+      ++renewals;
+      renew = false;
+      last = 0;
+    }
+    inverse_.apply(operator_, f_, change_);  // of the slope
+    slope_ -= change_;
+    value_.noalias() -= own * change_;
+    const double moved = own * norm(change_);
+    if (!std::isfinite(moved)) return false;
+    const bool rounding = moved * tolerance_ < rounding_part;
+    if (last > 0 && !rounding) {
+      const double ratio = moved / last;
+      if (ratio >= 1) {
+        if (renewals > (cheap ? 0 : most_renewals - 1)) return false;
+        renew = true;
+        if (renewals > 0) continue;
+        predict(i, length);
+        value_ = known_ + own * slope_;
+        continue;
+      }
+      rate = ratio / (1 - ratio);
+      renew = !cheap && ratio > slow_ratio && renewals < most_renewals;
+    }
+    last = moved;
+    renew = renew || careful;
+    // With a contraction q per iteration what is left after a change is q + q^2 + ... = q/(1 - q) of it. The ratio of
+    // two changes tells the q of what they consist of, and that of an earlier stage, with other factors, nothing of
+    // this one: where the factors are not of this tau and speed, an error along stiff directions shrinks by no more
+    // than their mismatch, however small it is among the first changes.
+    const double q = inverse_.mismatch(own, equations_.system().parameter());
+    // Careful, the change itself is small enough.
+    if (rounding || (careful ? 1 : std::max(rate, q / (1 - q))) * moved <= newton_part) {
+      rate_ = rate;
+      slopes_.col(i) = slope_;
+      return true;
+    }
+  }
+  return false;
+}
+
+std::optional<double> ThinSteps::attempt(double time, double length) {
+  weights_ = (tolerance_ * (1 + start_.array().abs())).inverse();
+  for (Index i = 0; i < tableau_.stages(); ++i) {
+    if (!solve_stage(i, time, length)) {
+      careful_ = true;
+      rate_ = 1;
+      has_tangents_ = false;
+      return std::nullopt;
+    }
+    const core::WriteArray out(stages_[static_cast<std::size_t>(i)].get());
+    Eigen::Map<VectorXd>(out.data(), out.size()) = value_;
+  }
+  end_ = value_;
+  weights_ = (tolerance_ * (1 + start_.array().abs().max(end_.array().abs()))).inverse();
+  change_.noalias() = length * (slopes_ * estimate_);
+  return norm(change_);
+}
+
+Taken ThinSteps::step(double time, double wanted, Vec u) {
+  {
+    const core::ReadArray a(u);
+    start_ = Eigen::Map<const VectorXd>(a.data(), a.size());
+  }
+  const Taken taken = take_step(wanted, tableau_.order, [&](double h) { return attempt(time, h); });
+  careful_ = false;
+  time_ = time;
+  length_ = length_before_ = taken.length;
+  before_ = slopes_;
+  const core::WriteArray out(u);
+  Eigen::Map<VectorXd>(out.data(), out.size()) = end_;
+  return taken;
+}
+
+void ThinSteps::interpolate(double time, Vec u) {
+  const double part = (time - time_) / length_;
+  VectorXd weights = VectorXd::Zero(tableau_.stages());
+  for (Index p = continuous_.cols() - 1; p >= 0; --p) weights = part * (weights + continuous_.col(p));
+  const core::WriteArray out(u);
+  Eigen::Map<VectorXd>(out.data(), out.size()) = start_ + length_ * (before_ * weights);
+}
+
+}  // namespace whirl::transient
