@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/rotor/element.hpp"
 #include "whirl/rotor/freedom.hpp"
 #include "whirl/solve/cycle/cost.hpp"

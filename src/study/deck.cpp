@@ -12,7 +12,7 @@
 #include "sense.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
-#include "whirl/film/describe.hpp"
+#include "whirl/film/contract/describe.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/rotor/advice.hpp"
 #include "whirl/rotor/hinges.hpp"

@@ -12,7 +12,7 @@
 #include "pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/solve/cycle/spread_collocation.hpp"
 #include "whirl/study/layout_options.hpp"
 #include "whirl/study/study.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "study/bearing/gas_point.hpp"
-#include "whirl/film/facts.hpp"
+#include "whirl/film/contract/facts.hpp"
 
 namespace whirl::study {
 namespace {

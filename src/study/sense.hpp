@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "whirl/film/response.hpp"
+#include "whirl/film/contract/response.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/system/options.hpp"
 #include "whirl/system/train.hpp"

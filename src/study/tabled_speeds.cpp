@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "whirl/deck/units.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 namespace {

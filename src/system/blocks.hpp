@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/system/rotor_system.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "whirl/film/describe.hpp"
+#include "whirl/film/contract/describe.hpp"
 #include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/shaft.hpp"

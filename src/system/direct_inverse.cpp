@@ -8,7 +8,7 @@
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/entry_stream.hpp"
 #include "whirl/core/pivoted_lu.hpp"
-#include "whirl/film/film_matrix.hpp"
+#include "whirl/film/algebra/film_matrix.hpp"
 
 namespace whirl::system {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::system {
 

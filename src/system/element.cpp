@@ -6,7 +6,7 @@
 
 #include "whirl/core/error.hpp"
 #include "whirl/deck/description.hpp"
-#include "whirl/film/describe.hpp"
+#include "whirl/film/contract/describe.hpp"
 
 namespace whirl::system {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "part.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::system {

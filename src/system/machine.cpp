@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "whirl/film/thickness.hpp"
+#include "whirl/film/sheet/thickness.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/system/options.hpp"
 

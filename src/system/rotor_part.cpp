@@ -5,7 +5,7 @@
 
 #include "states.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::system {

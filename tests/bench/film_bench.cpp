@@ -8,11 +8,11 @@
 #include <numbers>
 #include <vector>
 
-#include "film/band_lu.hpp"
-#include "film/condensed.hpp"
+#include "film/algebra/band_lu.hpp"
+#include "film/use/condensed.hpp"
 #include "support/film_of.hpp"
-#include "whirl/film/film.hpp"
-#include "whirl/film/film_matrix.hpp"
+#include "whirl/film/algebra/film_matrix.hpp"
+#include "whirl/film/contract/film.hpp"
 
 extern "C" {
 void dpbtrf_(const char* uplo, const int* n, const int* kd, double* ab, const int* ldab, int* info);

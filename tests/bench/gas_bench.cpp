@@ -15,7 +15,7 @@
 #include "system/start.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/session.hpp"
-#include "whirl/film/coefficients.hpp"
+#include "whirl/film/use/coefficients.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/newton.hpp"
 

@@ -1,5 +1,5 @@
 // LU of a band against a sparse LU, with rows of several units.
-#include "film/band_lu.hpp"
+#include "film/algebra/band_lu.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <numbers>
 
-#include "film/impedance.hpp"
-#include "whirl/film/film.hpp"
+#include "film/closed/impedance.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::film::testing {
 

@@ -1,5 +1,5 @@
 // Stiffness and damping at many frequencies from one factorisation.
-#include "whirl/film/coefficients.hpp"
+#include "whirl/film/use/coefficients.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "film/cases.hpp"
 #include "support/film_of.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::film::testing {
 

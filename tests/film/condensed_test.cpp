@@ -1,6 +1,6 @@
 // Films with states whose steady equations are solved inside: exact tangents, the film with states at rest, no trace of
 // the start, and what a velocity means to them.
-#include "film/condensed.hpp"
+#include "film/use/condensed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "film/content_cases.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/load.hpp"
-#include "whirl/film/describe.hpp"
+#include "whirl/film/contract/describe.hpp"
 
 namespace whirl::film::testing {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "film/compliant_cases.hpp"
-#include "film/liner.hpp"
+#include "film/wall/liner.hpp"
 
 namespace whirl::film::testing {
 namespace {

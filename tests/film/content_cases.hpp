@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "film/cases.hpp"
-#include "film/hole.hpp"
-#include "whirl/film/film.hpp"
+#include "film/sheet/hole.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::film::testing {
 

@@ -1,5 +1,5 @@
 // Stiffness and damping by enforced harmonic motion.
-#include "whirl/film/enforced.hpp"
+#include "whirl/film/use/enforced.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "film/gas_cases.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/film_matrix.hpp"
+#include "whirl/film/algebra/film_matrix.hpp"
 
 namespace whirl::film::testing {
 namespace {

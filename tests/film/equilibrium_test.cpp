@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "film/cases.hpp"
-#include "film/impedance.hpp"
+#include "film/closed/impedance.hpp"
 
 namespace whirl::film::testing {
 namespace {

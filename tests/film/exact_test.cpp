@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "film/cases.hpp"
-#include "whirl/film/turbulence.hpp"
+#include "whirl/film/contract/turbulence.hpp"
 
 namespace whirl::film::testing {
 namespace {

@@ -8,8 +8,8 @@
 #include "whirl/core/error.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
-#include "whirl/film/describe.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/describe.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::film::testing {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "film/gas/gas_feed.hpp"
 #include "film/gas_cases.hpp"
-#include "film/gas_feed.hpp"
-#include "film/lattice.hpp"
+#include "film/sheet/lattice.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/thermal/orifice.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "film/cases.hpp"
 #include "film/content_cases.hpp"
-#include "film/hole.hpp"
+#include "film/sheet/hole.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film::testing {

@@ -1,5 +1,5 @@
 // Films in closed form: van de Vrande (2001) section 4.1 with the errata, and quadrature of the definitions.
-#include "film/impedance.hpp"
+#include "film/closed/impedance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Bearings known by coefficients over the speed.
-#include "whirl/film/linear.hpp"
+#include "whirl/film/contract/linear.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "whirl/core/error.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::film::testing {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "film/cases.hpp"
 #include "source_dir.hpp"
-#include "whirl/film/turbulence.hpp"
+#include "whirl/film/contract/turbulence.hpp"
 
 namespace whirl::film::testing {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "film/cases.hpp"
 #include "film/gas_cases.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::film::testing {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "film/banded_pad.hpp"
+#include "film/sheet/banded_pad.hpp"
 
 using namespace whirl;
 using namespace whirl::film;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "film/cases.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::film::testing {
 

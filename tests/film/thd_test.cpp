@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film/one_layer_pad.hpp"
+#include "film/heat/one_layer_pad.hpp"
+#include "film/heat/thd_pad.hpp"
 #include "film/thd_cases.hpp"
-#include "film/thd_pad.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film::testing {

@@ -6,7 +6,7 @@
 
 #include "film/cases.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/thickness.hpp"
+#include "whirl/film/sheet/thickness.hpp"
 
 namespace whirl::film::testing {
 namespace {

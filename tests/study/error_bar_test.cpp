@@ -10,7 +10,7 @@
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/shaft_mesh.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/study/layout_options.hpp"
 
 namespace whirl::study {

@@ -5,7 +5,7 @@
 #include "source_dir.hpp"
 #include "study/cost.hpp"
 #include "study/layout.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/solve/cycle/spread_collocation.hpp"
 #include "whirl/study/deck.hpp"
 #include "whirl/study/layout_options.hpp"

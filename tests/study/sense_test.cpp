@@ -10,7 +10,7 @@
 #include "study/bars/open_bore.hpp"
 #include "study/sense.hpp"
 #include "support/half_rotor.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 using namespace whirl;

@@ -11,7 +11,7 @@
 #include "study/common.hpp"
 #include "study/linear/synchronous.hpp"
 #include "study/stress/bending.hpp"
-#include "whirl/film/linear.hpp"
+#include "whirl/film/contract/linear.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::study {

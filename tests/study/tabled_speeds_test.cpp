@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 namespace {

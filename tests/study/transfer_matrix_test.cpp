@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "rotor/shafts.hpp"
-#include "whirl/film/linear.hpp"
+#include "whirl/film/contract/linear.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::study {

@@ -2,7 +2,7 @@
 // Films whose kind a test chooses while it runs.
 
 #include "whirl/core/error.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::film::testing {
 

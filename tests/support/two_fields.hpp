@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::test {
 

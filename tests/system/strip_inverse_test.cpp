@@ -1,5 +1,5 @@
 // Exact inverses of films, wherever ranks cut them: that of films in strips of columns, and that of films without one.
-#include "film/strip_inverse.hpp"
+#include "film/algebra/strip_inverse.hpp"
 
 #include <gtest/gtest.h>
 

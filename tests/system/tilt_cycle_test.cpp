@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "support/overhung.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 

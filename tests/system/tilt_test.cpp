@@ -8,7 +8,7 @@
 #include "support/dense.hpp"
 #include "support/overhung.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/thickness.hpp"
+#include "whirl/film/sheet/thickness.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/rotor/alignment.hpp"

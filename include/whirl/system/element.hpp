@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "whirl/core/curve.hpp"
-#include "whirl/film/linear.hpp"
+#include "whirl/film/contract/linear.hpp"
 
 namespace whirl::deck {
 template <class S>

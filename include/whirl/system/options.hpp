@@ -11,7 +11,7 @@
 
 #include "whirl/deck/description.hpp"
 #include "whirl/deck/number_or_list.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/rotor/options.hpp"
 #include "whirl/system/others.hpp"
 #include "whirl/system/train.hpp"

@@ -9,7 +9,7 @@
 
 #include "whirl/core/entry_stream.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/problem/settles.hpp"
 #include "whirl/rotor/rotor.hpp"
 #include "whirl/system/plant.hpp"

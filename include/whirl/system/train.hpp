@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/rotor/options.hpp"
 #include "whirl/system/element.hpp"
 

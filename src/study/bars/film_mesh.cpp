@@ -7,7 +7,7 @@
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/state_rows.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/study/layout_options.hpp"
 
 namespace whirl::study {

@@ -8,7 +8,7 @@
 
 #include "study/bars/error_bar.hpp"
 #include "study/state_rows.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {

@@ -17,8 +17,8 @@
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/elastic.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/elastic.hpp"
+#include "whirl/film/contract/options.hpp"
 #include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {

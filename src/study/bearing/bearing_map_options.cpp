@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "study/bearing/bearing_map.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 

@@ -10,7 +10,7 @@
 #include "study/bearing/enforced_motion.hpp"
 #include "study/bearing/film_at_rest.hpp"
 #include "study/pieces.hpp"
-#include "whirl/film/coefficients.hpp"
+#include "whirl/film/use/coefficients.hpp"
 
 namespace whirl::study {
 

@@ -19,7 +19,7 @@
 #include "study/lost_points.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/coefficients.hpp"
+#include "whirl/film/use/coefficients.hpp"
 
 namespace whirl::study {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bearing/dynamic_coefficients.hpp"
-#include "whirl/film/enforced.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
+#include "whirl/film/use/enforced.hpp"
 
 namespace whirl::study {
 

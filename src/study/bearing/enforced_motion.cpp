@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "study/bearing/coefficient_names.hpp"
-#include "whirl/film/enforced.hpp"
+#include "whirl/film/use/enforced.hpp"
 
 namespace whirl::study {
 namespace {

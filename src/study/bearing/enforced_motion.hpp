@@ -8,7 +8,7 @@
 
 #include "study/bars/error_bar.hpp"
 #include "study/bearing/film_at_rest.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 

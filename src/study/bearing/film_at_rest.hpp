@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "whirl/core/error.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::study {

@@ -4,8 +4,8 @@
 
 #include "study/bearing/gas_bearing.hpp"
 #include "study/bearing/held_film.hpp"
-#include "whirl/film/gas.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/gas.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 

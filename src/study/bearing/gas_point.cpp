@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "whirl/core/error.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "whirl/film/film.hpp"
-#include "whirl/film/gas.hpp"
+#include "whirl/film/contract/film.hpp"
+#include "whirl/film/contract/gas.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::study {

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 

@@ -5,7 +5,7 @@
 
 #include "whirl/core/error.hpp"
 #include "whirl/core/pivoted_lu.hpp"
-#include "whirl/film/share.hpp"
+#include "whirl/film/contract/share.hpp"
 
 namespace whirl::study {
 namespace {

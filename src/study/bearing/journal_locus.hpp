@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 
 namespace whirl::study {
 

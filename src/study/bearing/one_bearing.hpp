@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "study/bearing/journal_locus.hpp"
-#include "whirl/film/film.hpp"
+#include "whirl/film/contract/film.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::study {

@@ -6,7 +6,7 @@
 #include "study/convergence/mesh_convergence.hpp"
 #include "study/cycle/cycle_branch.hpp"
 #include "study/equilibrium/equilibrium_branch.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 

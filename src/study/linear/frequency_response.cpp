@@ -26,7 +26,7 @@
 #include "study/lost_points.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/film/linear.hpp"
+#include "whirl/film/contract/linear.hpp"
 #include "whirl/rotor/divide.hpp"
 
 namespace whirl::study {

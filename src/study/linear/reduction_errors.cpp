@@ -14,7 +14,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/codecs.hpp"
-#include "whirl/film/describe.hpp"
+#include "whirl/film/contract/describe.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/rotor/modal_coupling.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "study/cost.hpp"
 #include "study/linear/reduction_errors.hpp"
-#include "whirl/film/describe.hpp"
+#include "whirl/film/contract/describe.hpp"
 
 namespace whirl::study {
 

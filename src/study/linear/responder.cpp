@@ -10,7 +10,7 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/growth.hpp"
 #include "study/linear/synchronous.hpp"
-#include "whirl/film/thickness.hpp"
+#include "whirl/film/sheet/thickness.hpp"
 #include "whirl/rotor/divide.hpp"
 #include "whirl/rotor/freedom.hpp"
 #include "whirl/spectral/eigenvalues.hpp"

@@ -3,7 +3,7 @@
 #include "study/cost.hpp"
 #include "study/motion/motion.hpp"
 #include "study/motion/motion_start.hpp"
-#include "whirl/film/options.hpp"
+#include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
 
