@@ -25,9 +25,8 @@ namespace {
 
 template <class S>
 deck::Kind<Study> kind(std::string text) {
-  using Options = decltype(S::options);
-  return {std::string(S::key), std::move(text), &deck::structure_of<Options>(), [] { return std::make_unique<S>(); },
-          [](Study& s) -> void* { return &static_cast<S&>(s).options; }};
+  return {std::string(S::key), std::move(text), &deck::structure_of<typename S::Given>(),
+          [] { return std::make_unique<S>(); }, &S::place};
 }
 
 }  // namespace

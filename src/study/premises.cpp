@@ -20,7 +20,7 @@ namespace {
 // A response is asked for at the service speed of the machine too, unless it names another one.
 bool serves(const system::Machine& machine, const Study& study) {
   const auto* response = dynamic_cast<const UnbalanceResponse*>(&study);
-  return response && !response->options.operating_speed && machine.service_speed;
+  return response && !response->given().operating_speed && machine.service_speed;
 }
 
 // [rad/s]

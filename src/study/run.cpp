@@ -39,8 +39,8 @@ bool is_pattern(const Study& study, const Deck& deck) {
     const auto* sweep = dynamic_cast<const Sweep*>(s.get());
     // A sweep repeats what stands before it.
     const bool repeats = behind && sweep && sweep->repeats(study.name());
-    pattern = pattern || (repeats && !sweep->options.as_given);
-    needed = needed || (repeats && sweep->options.as_given) || s->goes_on_from(study);
+    pattern = pattern || (repeats && !sweep->given().as_given);
+    needed = needed || (repeats && sweep->given().as_given) || s->goes_on_from(study);
   }
   return pattern && !needed && study.kind() != Sweep::key;
 }

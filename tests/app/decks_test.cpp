@@ -211,8 +211,8 @@ TEST(TurbineTrain, MastersAreThoseOfTheTable) {
   ASSERT_EQ(d.studies.size(), 2U);
   const auto& cycles = dynamic_cast<const study::CycleBranch&>(*d.studies[1]);
   EXPECT_EQ(cycles.name(), "G6.3");
-  EXPECT_EQ(cycles.options.parameter.range.unit, "rpm");
-  EXPECT_NEAR(cycles.options.parameter.range.to, 200 * std::numbers::pi, 1e-11);
+  EXPECT_EQ(cycles.given().parameter.range.unit, "rpm");
+  EXPECT_NEAR(cycles.given().parameter.range.to, 200 * std::numbers::pi, 1e-11);
 }
 
 TEST(TurbineTrain, OverridesReachCellsBearingsAndStudies) {
@@ -222,7 +222,7 @@ TEST(TurbineTrain, OverridesReachCellsBearingsAndStudies) {
   EXPECT_EQ(d.machine.rotor.segments[2].length, 0.081);
   EXPECT_EQ(d.machine.bearings[1].geometry->clearance, 2.64e-4);
   EXPECT_EQ(film::facts(d.machine.bearings[1].film).cells[0], 120);
-  EXPECT_NEAR(dynamic_cast<const study::EquilibriumBranch&>(*d.studies[0]).options.parameter.range.to,
+  EXPECT_NEAR(dynamic_cast<const study::EquilibriumBranch&>(*d.studies[0]).given().parameter.range.to,
               300 * std::numbers::pi, 1e-11);
 }
 

@@ -16,6 +16,12 @@
 namespace whirl::study {
 namespace {
 
+// What a deck would have given.
+template <class S>
+typename S::Given& options_of(S& study) {
+  return *static_cast<typename S::Given*>(S::place(study));
+}
+
 constexpr double rpm = std::numbers::pi / 30;
 
 io::Brief brief_of(const Study& study, io::StudySummary summary, bool delivered = true, io::Group group = {}) {
@@ -60,7 +66,7 @@ void put_critical(io::StudySummary& s, int number, double speed, double decremen
 
 TEST(ModesBrief, PartsCriticalSpeedsFromDampedOnes) {
   Modes study;
-  study.options.range = deck::Range{500 * rpm, 3000 * rpm, "rpm"};
+  options_of(study).range = deck::Range{500 * rpm, 3000 * rpm, "rpm"};
   io::StudySummary s = over_speeds();
   put_critical(s, 1, 1234, 0.1, true);
   put_critical(s, 2, 1500, 2, true);
@@ -89,7 +95,7 @@ TEST(ModesBrief, PartsCriticalSpeedsFromDampedOnes) {
 
 TEST(ModesBrief, SaysWhereModesGrow) {
   Modes study;
-  study.options.range = deck::Range{500 * rpm, 12000 * rpm, "rpm"};
+  options_of(study).range = deck::Range{500 * rpm, 12000 * rpm, "rpm"};
   io::StudySummary s = over_speeds();
   s.ranges = {{500, 700, "rpm", "unstable"}, {700, 9572.6, "rpm", "stable"}, {9572.6, 12000, "rpm", "unstable"}};
   s.set("unstable.1.from", 500, "rpm");
@@ -109,7 +115,7 @@ TEST(ModesBrief, SaysWhereModesGrow) {
 
 TEST(ModesBrief, SaysOfOneSpeedWhatIsKnownThere) {
   Modes study;
-  study.options.speeds = {{500 * rpm, "rpm"}};
+  options_of(study).speeds = {{500 * rpm, "rpm"}};
   io::StudySummary s = over_speeds();
   s.modes[0].speed = 500;
   s.set("at.500.least_damped.frequency", 200 * std::numbers::pi, "rad/s");
@@ -123,7 +129,7 @@ TEST(ModesBrief, SaysOfOneSpeedWhatIsKnownThere) {
 
 TEST(ModesBrief, IsEmptyWithoutAnAnswer) {
   Modes study;
-  study.options.range = deck::Range{500 * rpm, 12000 * rpm, "rpm"};
+  options_of(study).range = deck::Range{500 * rpm, 12000 * rpm, "rpm"};
   const io::Brief b = brief_of(study, {}, false);
   EXPECT_TRUE(b.sentences.empty() && b.tables.empty());
   EXPECT_EQ(brief_of(study, {}).sentences, std::vector<std::string>{"no mode found"});
@@ -141,7 +147,7 @@ io::PeakEntry peak(const std::string& place, double speed, double size, const st
 
 TEST(ResponseBrief, NamesTheLargestPeakThatIsAMotion) {
   UnbalanceResponse study;
-  study.options.range = {500 * rpm, 6000 * rpm, "rpm"};
+  options_of(study).range = {500 * rpm, 6000 * rpm, "rpm"};
   io::StudySummary s;
   s.points = 10;
   EXPECT_EQ(brief_of(study, s).sentences, std::vector<std::string>{"no peak from 500 to 6000 rpm"});
@@ -179,7 +185,7 @@ TEST(ResponseBrief, NamesTheLargestPeakThatIsAMotion) {
 TEST(ResponseBrief, TellsUndampedPeaksFromNarrowOnes) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   UnbalanceResponse study;
-  study.options.range = {500 * rpm, 6000 * rpm, "rpm"};
+  options_of(study).range = {500 * rpm, 6000 * rpm, "rpm"};
   io::StudySummary s;
   s.points = 10;
   s.peaks = {peak("node 4", 3094, infinity, "undamped"), peak("node 4", 5000, infinity, "stable")};
@@ -199,7 +205,7 @@ io::Brief brief_of(const Study& study, StudyResult result) {
 // A speed that grows with the root of the stiffness, and then no more.
 TEST(CriticalSpeedMapBrief, SaysHowTheLowestSpeedRises) {
   CriticalSpeedMap study;
-  study.options.count = 2;
+  options_of(study).count = 2;
   StudyResult result;
   io::Group& map = result.group.child("map");
   map.put("stiffness", std::vector<double>{1e4, 1e6, 1e8, 1e10}, "N/m", "");
@@ -219,8 +225,8 @@ TEST(CriticalSpeedMapBrief, SaysHowTheLowestSpeedRises) {
 
 TEST(ReductionErrorsBrief, NamesTheFreedomsThatAreEnough) {
   ReductionErrors study;
-  study.options.methods = {ReductionMethod::modal_free, ReductionMethod::craig_bampton};
-  study.options.freedoms = {10, 20};
+  options_of(study).methods = {ReductionMethod::modal_free, ReductionMethod::craig_bampton};
+  options_of(study).freedoms = {10, 20};
   StudyResult result;
   for (const auto& [name, error] :
        {std::pair{"modal_free.10.", 0.1}, {"modal_free.20.", 2e-3}, {"craig_bampton.20.", 2e-4}})
@@ -235,10 +241,10 @@ TEST(ReductionErrorsBrief, NamesTheFreedomsThatAreEnough) {
 
 TEST(ElementConvergenceBrief, SaysHowFarFrequenciesMove) {
   ElementConvergence study;
-  study.options.parts = {1, 2};
-  study.options.elements = {rotor::BeamElement::rayleigh};
-  study.options.count = 1;
-  study.options.condition = false;
+  options_of(study).parts = {1, 2};
+  options_of(study).elements = {rotor::BeamElement::rayleigh};
+  options_of(study).count = 1;
+  options_of(study).condition = false;
   StudyResult result;
   io::Group& of = result.group.child("convergence").child("rayleigh");
   of.put("elements", std::vector<double>{4, 8}, "1", "");
@@ -255,7 +261,7 @@ TEST(ElementConvergenceBrief, SaysHowFarFrequenciesMove) {
 
 TEST(FrequencyResponseBrief, NamesLargestAnswersAndLimits) {
   FrequencyResponse study;
-  study.options.constant_at = {{100 * std::numbers::pi, "Hz"}};
+  options_of(study).constant_at = {{100 * std::numbers::pi, "Hz"}};
   StudyResult result;
   io::StudySummary& s = result.summary;
   s.set("7.x.from.7.x.largest", 2e-6, "m/N");

@@ -154,10 +154,17 @@ std::vector<double> speeds_of(const Options& o) {
 template <class Options>
 class StudyWith : public Study {
 public:
-  Options options;
+  using Given = Options;
+  /// As the deck gives them.
+  [[nodiscard]] const Options& given() const { return options; }
+  /// Where the options of a study of this kind are read to.
+  [[nodiscard]] static void* place(Study& study) { return &static_cast<StudyWith&>(study).options; }
   [[nodiscard]] std::string name() const override { return options.name.empty() ? std::string(kind()) : options.name; }
   [[nodiscard]] std::vector<std::string> unbalances() const override { return unbalances_of(options); }
   [[nodiscard]] std::vector<double> speeds() const override { return speeds_of(options); }
+
+protected:
+  Options options;
 };
 
 /// All kinds, in the order in which they are listed.

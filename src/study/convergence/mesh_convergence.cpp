@@ -100,7 +100,7 @@ StudyResult MeshConvergence::run(Context& context) {
     if (static_cast<std::size_t>(k) > all.size())
       throw core::NotConverged(fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), k));
 
-  if (rest) return converge(context, options, rest->options, all, chosen);
+  if (rest) return converge(context, options, rest->given(), all, chosen);
   const CycleBranchOptions branch = options_of(context, options.of);
   auto& results = context.results;
   const std::string& unit = branch.parameter.range.unit;

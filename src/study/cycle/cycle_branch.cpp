@@ -139,17 +139,17 @@ std::string name_of_doubled(const std::string& name, std::size_t k) {
 std::optional<CycleBranchOptions> branch_called(const Study& study, const std::string& name) {
   const auto* branch = dynamic_cast<const CycleBranch*>(&study);
   if (!branch) return std::nullopt;
-  if (branch->name() == name) return branch->options;
+  if (branch->name() == name) return branch->given();
   const std::string born = name_of_doubled(branch->name(), 1);
   const std::string stem = born.substr(0, born.size() - 1);
-  const bool is_born = branch->options.follow_flips && name.starts_with(stem) && name.size() > stem.size() &&
+  const bool is_born = branch->given().follow_flips && name.starts_with(stem) && name.size() > stem.size() &&
                        name.find_first_not_of("0123456789", stem.size()) == std::string::npos;
   if (!is_born) return std::nullopt;
-  const auto& flips = branch->options.flips;
+  const auto& flips = branch->given().flips;
   const auto wanted = [&](int k) { return name == name_of_doubled(branch->name(), static_cast<std::size_t>(k)); };
   if (name[stem.size()] == '0' || (!flips.empty() && std::none_of(flips.begin(), flips.end(), wanted)))
     return std::nullopt;
-  return of_twice_the_period(branch->options);
+  return of_twice_the_period(branch->given());
 }
 
 }  // namespace whirl::study

@@ -40,7 +40,7 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   for (const auto& s : context.studies) {
     if (auto cycles = branch_called(*s, options.of)) of_cycles_ = std::move(cycles);
     if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest && s->name() == options.of)
-      of_rest_ = &rest->options;
+      of_rest_ = &rest->given();
   }
   if (!context.earlier.has_group(io::safe_name(options.of)))
     throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));

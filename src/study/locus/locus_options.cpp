@@ -53,8 +53,8 @@ void Locus::validate_among(std::span<const std::unique_ptr<Study>> before, const
   for (const auto& s : before) {
     const Parameter* first = nullptr;
     const bool called = s->name() == options.of || branch_called(*s, options.of);
-    if (const auto* cycles = dynamic_cast<const CycleBranch*>(s.get()); cycles) first = &cycles->options.parameter;
-    if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest) first = &rest->options.parameter;
+    if (const auto* cycles = dynamic_cast<const CycleBranch*>(s.get()); cycles) first = &cycles->given().parameter;
+    if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest) first = &rest->given().parameter;
     if (!first) continue;
     names.push_back(s->name());
     if (!called) continue;
