@@ -88,6 +88,14 @@ public:
   /// states; these do not see each other. Not collective.
   [[nodiscard]] virtual std::vector<Field> fields() const { return {{"state", 0, local_size()}}; }
 
+  /// Whether some states follow the others at once in equilibrium, through equations that are only piecewise smooth, so
+  /// that settle() finds them. Not collective, the same on all ranks.
+  [[nodiscard]] virtual bool settles() const { return false; }
+  /// Brings these states in x to where their own equations at rest hold, the others unchanged. Newton's method on the
+  /// whole does so along its steps: which nodes of a film are full is then never asked of a line search. Throws
+  /// core::DomainError or core::NotConverged, agreed on all ranks; x is then as it was or partly settled.
+  virtual void settle(Vec /*x*/) {}
+
   /// A new one where every part but the hub offers an approximate inverse, else null, on all ranks. Collective.
   [[nodiscard]] virtual std::unique_ptr<PartInverse> make_part_inverse() { return nullptr; }
 

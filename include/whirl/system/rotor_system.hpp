@@ -10,7 +10,6 @@
 #include "whirl/core/entry_stream.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/contract/film.hpp"
-#include "whirl/problem/settles.hpp"
 #include "whirl/rotor/rotor.hpp"
 #include "whirl/system/plant.hpp"
 #include "whirl/system/train.hpp"
@@ -66,7 +65,7 @@ struct JournalState : PlaceState {
 /// force and tangents are summed over the ranks. The own states of films that have some follow behind all pairs (q, v),
 /// film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks, cut where the films allow it;
 /// the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
-class RotorSystem : public Plant, public problem::Settles {
+class RotorSystem : public Plant {
 public:
   /// The speed [rad/s] is the parameter.
   RotorSystem(MPI_Comm comm, Train train, double speed);

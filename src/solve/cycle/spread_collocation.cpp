@@ -9,7 +9,6 @@
 #include "solve/newton/spread_point.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/index.hpp"
-#include "whirl/problem/settles.hpp"
 
 namespace whirl::solve {
 
@@ -36,8 +35,7 @@ struct SpreadCollocation::Tools {
   Tools(problem::System& system, const Scheme& scheme)
       : point(system), maker(PortMaker::make(system)), step(system.comm(), system.local_size(), scheme) {
     core::require(maker != nullptr, "a machine whose parts elimination keeps apart");
-    const auto* const jumping = dynamic_cast<problem::Settles*>(&system);
-    each_point = jumping && jumping->settles();
+    each_point = system.settles();
   }
   SpreadPoint point;
   std::unique_ptr<PortMaker> maker;

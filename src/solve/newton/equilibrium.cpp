@@ -15,7 +15,6 @@
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/matrix_rows.hpp"
-#include "whirl/problem/settles.hpp"
 
 namespace whirl::solve {
 
@@ -120,15 +119,14 @@ void EquilibriumProblem::fill_bordered() {
 }
 
 bool EquilibriumProblem::settles() const {
-  const auto* const system = dynamic_cast<problem::Settles*>(&system_);
-  return system != nullptr && system->settles();
+  return system_.settles();
 }
 
 bool EquilibriumProblem::settle(Vec u) {
   if (!settles()) return false;
   try {
     prepare(u);
-    dynamic_cast<problem::Settles&>(system_).settle(x_.get());
+    system_.settle(x_.get());
   } catch (const core::DomainError&) {
     return false;
   } catch (const core::NotConverged&) {

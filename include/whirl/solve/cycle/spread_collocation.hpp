@@ -22,7 +22,7 @@ struct SpreadCollocationOptions : NewtonPicardOptions {
 /// The equations of CycleProblem at Radau points, F(2 pi k s, x(s), x'(s)/T; p) = 0 with x(0) = x(1), for a machine
 /// made of parts on the ranks of its own communicator. Each rank holds its rows of the states at all points and of the
 /// blocks of dF/dx and dF/d(dx/dt) there: memory grows with states times points, and with one elimination for each
-/// interval, or for each point of systems that settle (problem::Settles). How an interval is solved: see
+/// interval, or for each point of systems that settle (problem::System::settles()). How an interval is solved: see
 /// SpreadInterval.
 class SpreadCollocation final : public SpreadCycle {
 public:
