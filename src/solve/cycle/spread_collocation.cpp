@@ -6,9 +6,9 @@
 #include "solve/cycle/spread_interval.hpp"
 #include "solve/newton/local_part.hpp"
 #include "solve/newton/port_maker.hpp"
-#include "solve/newton/spread_point.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/index.hpp"
+#include "whirl/problem/spread_point.hpp"
 
 namespace whirl::solve {
 
@@ -37,7 +37,7 @@ struct SpreadCollocation::Tools {
     core::require(maker != nullptr, "a machine whose parts elimination keeps apart");
     each_point = system.settles();
   }
-  SpreadPoint point;
+  problem::SpreadPoint point;
   std::unique_ptr<PortMaker> maker;
   SpreadStep step;
   core::Matrix matrix;
@@ -90,7 +90,7 @@ std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const MatrixXd& x
                                                                MatrixXd* columns) {
   const Index m = scheme().degree;
   const bool by_speed = !options().autonomous && system().parameter_is_speed();
-  SpreadPoint& point = tools_->point;
+  problem::SpreadPoint& point = tools_->point;
   PortMaker& maker = *tools_->maker;
   const double h = length(i) * period;
   const bool eliminate = similar.empty(), each = eliminate ? tools_->each_point : similar.size() > 1;

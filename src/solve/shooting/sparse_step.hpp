@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "solve/newton/spread_point.hpp"
 #include "solve/shooting/port_stages.hpp"
 #include "solve/shooting/stage_solver.hpp"
 #include "solve/shooting/structured_stage.hpp"
+#include "whirl/problem/spread_point.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/shooting/tableau.hpp"
 
@@ -78,7 +78,7 @@ private:
   problem::System& system_;
   Tableau tableau_;
   bool constant_rates_, by_length_wanted_;
-  SpreadPoint point_;
+  problem::SpreadPoint point_;
   core::Vector value_, base_, f_, d_, lift_;
   std::vector<core::Vector> slopes_;
   core::Matrix scratch_;

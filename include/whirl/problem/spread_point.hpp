@@ -3,14 +3,14 @@
 
 #include "whirl/problem/system.hpp"
 
-namespace whirl::solve {
+namespace whirl::problem {
 
 /// F/residual_scale as a function of x/state_scale and (dx/dt)/state_scale, this rank's rows. Collective on the
 /// system's communicator.
 class SpreadPoint {
 public:
   /// `system` outlives this.
-  explicit SpreadPoint(problem::System& system);
+  explicit SpreadPoint(System& system);
   /// f = F(angle, x, xdot). Throws core::DomainError on all ranks.
   void residual(double angle, Vec x, Vec xdot, Vec f);
   /// m = alpha dF/dx + sigma dF/d(dx/dt); m is made if it is null.
@@ -24,8 +24,8 @@ public:
 
 private:
   void put(Vec x, Vec xdot);
-  problem::System& system_;
+  System& system_;
   core::Vector state_scale_, residual_inverse_, x_, xdot_;
 };
 
-}  // namespace whirl::solve
+}  // namespace whirl::problem

@@ -1,10 +1,10 @@
-#include "solve/newton/spread_point.hpp"
+#include "whirl/problem/spread_point.hpp"
 
-namespace whirl::solve {
+namespace whirl::problem {
 
 using core::check;
 
-SpreadPoint::SpreadPoint(problem::System& system) : system_(system) {
+SpreadPoint::SpreadPoint(System& system) : system_(system) {
   x_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
   for (core::Vector* v : {&xdot_, &state_scale_, &residual_inverse_}) *v = core::duplicate(x_.get());
   system.scales(state_scale_.get(), residual_inverse_.get());
@@ -35,4 +35,4 @@ void SpreadPoint::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
   check(VecPointwiseMult(f, f, residual_inverse_.get()));
 }
 
-}  // namespace whirl::solve
+}  // namespace whirl::problem
