@@ -34,7 +34,7 @@ time_modes mode_composition mode_system dense_composition sweep_composition swee
 film_march dominant_subspace spread_subspace spread_layout
 runge_kutta structured_rate structured_stage structured_step stage_solver sparse_step port_stages
 bordered_monodromy nearest_eigenvalues thin_inverse equations
-entry_stream sparse_lu pivoted_lu dense_lu direct_solver least_squares symmetric shell
+entry_stream sparse_lu pivoted_lu pivoted_band dense_lu direct_solver least_squares symmetric shell
 """.split()
 WRAPPERS = {"DenseLu", "SparseLu", "PivotedLu"}
 SOLVES = {"solve", "solve_transposed", "solve_adjoint", "solve_at", "apply", "apply_at", "eliminate", "substitute", "precondition", "factorise", "compose"}

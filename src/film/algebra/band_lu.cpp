@@ -9,13 +9,6 @@
 
 #include "film/algebra/pack.hpp"
 
-extern "C" {
-void dgbtrf_(const int* rows, const int* columns, const int* below, const int* above, double* band, const int* stride,
-             int* exchanged, int* info);
-void dgbtrs_(const char* which, const int* size, const int* below, const int* above, const int* sides,
-             const double* band, const int* stride, const int* exchanged, double* x, const int* rows, int* info);
-}
-
 namespace whirl::film {
 
 int BandLu::bandwidth(const Sparse& pattern) {
@@ -188,24 +181,10 @@ void BandLu::factor_as_it_stands(const Sparse& a) {
 }
 
 bool BandLu::factor_with_exchanges(const Sparse& a) {
-  const int stride = 3 * width_ + 1;
-  lapack_.assign(static_cast<std::size_t>(stride) * static_cast<std::size_t>(size_), 0.0);
-  rows_.resize(static_cast<std::size_t>(size_));
-  for (int k = 0; k < size_; ++k) {
-    double* const to = lapack_.data() + static_cast<std::size_t>(stride) * static_cast<std::size_t>(k);
-    for (Sparse::InnerIterator it(a, k); it; ++it)
-      to[2 * width_ + it.row() - k] = scale_(it.row()) * it.value() * units_(k);
-  }
-  int info = 0;
-  dgbtrf_(&size_, &size_, &width_, &width_, lapack_.data(), &stride, rows_.data(), &info);
-  return info == 0;
-}
-
-Eigen::VectorXd BandLu::solved(char which, Eigen::VectorXd b) const {
-  const int one = 1, stride = 3 * width_ + 1;
-  int info = 0;
-  dgbtrs_(&which, &size_, &width_, &width_, &one, lapack_.data(), &stride, rows_.data(), b.data(), &size_, &info);
-  return b;
+  pivoted_.resize(size_, width_);
+  for (int k = 0; k < size_; ++k)
+    for (Sparse::InnerIterator it(a, k); it; ++it) pivoted_.at(it.row(), k) = scale_(it.row()) * it.value() * units_(k);
+  return pivoted_.factorise();
 }
 
 // Eight columns at a time: what they take from the rows below is read and written in the same vectors by the next
@@ -271,8 +250,12 @@ void BandLu::direct(const double* b, double* to) const {
 }
 
 Eigen::VectorXd BandLu::solve(const Eigen::VectorXd& b) const {
-  if (exchanged_) return units_.cwiseProduct(solved('N', scale_.cwiseProduct(b)));
   Eigen::VectorXd x(size_);
+  if (exchanged_) {
+    x = scale_.cwiseProduct(b);
+    pivoted_.solve(x.data());
+    return units_.cwiseProduct(x);
+  }
   direct<1>(b.data(), x.data());
   return x;
 }
@@ -348,7 +331,9 @@ Eigen::MatrixXd BandLu::solve_transposed(const Eigen::MatrixXd& b) const {
   Eigen::MatrixXd x(b.rows(), b.cols());
   for (Eigen::Index c = 0; c < b.cols();) {
     if (exchanged_) {
-      x.col(c) = scale_.cwiseProduct(solved('T', units_.cwiseProduct(b.col(c))));
+      x.col(c) = units_.cwiseProduct(b.col(c));
+      pivoted_.solve_transposed(x.col(c).data());
+      x.col(c).array() *= scale_.array();
       ++c;
     } else if (c + 1 < b.cols()) {
       transposed<2>(b.col(c).data(), x.col(c).data());

@@ -5,11 +5,13 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "whirl/core/pivoted_band.hpp"
+
 namespace whirl::film {
 
 /// D A U = L R of matrices of one pattern, U the units of the unknowns, D such that the largest entry of each row is
 /// one: films have several units. Rows are not exchanged; in a film that costs some digits where it stands still. How
-/// many is tried on a solution that is known: where fewer than seven are left LAPACK exchanges rows (dgbtrf). Cost for
+/// many is tried on a solution that is known: where fewer than seven are left rows are exchanged (core::PivotedBand). Cost for
 /// n states of bandwidth w on either side: 2 n w^2 operations to factorise, 4 n w to solve, 2 n w numbers to hold;
 /// twice as much with exchanges.
 class BandLu {
@@ -39,7 +41,6 @@ private:
   template <int Vectors, class LayOut>
   void eliminate(const LayOut& lay_out);
   [[nodiscard]] bool factor_with_exchanges(const Sparse& a);
-  [[nodiscard]] Eigen::VectorXd solved(char which, Eigen::VectorXd b) const;
   template <int Sides>
   void direct(const double* b, double* to) const;
   template <int Sides>
@@ -56,8 +57,7 @@ private:
   std::vector<double> panel_;  // L of four columns at once
   bool exchanged_ = false;
   double loss_ = 0;
-  std::vector<double> lapack_;     // with exchanges
-  std::vector<int> rows_;          // exchanged
+  core::PivotedBand pivoted_;
   Eigen::VectorXd units_, scale_;  // D
 };
 

@@ -6,24 +6,9 @@
 
 #include "solve/shooting/structured_rate.hpp"
 #include "whirl/core/dense_lu.hpp"
+#include "whirl/core/pivoted_band.hpp"
 
 namespace whirl::solve {
-
-/// LU of a band matrix with exchanges of rows: `reach` diagonals on either side of the main one.
-class PivotedBandLu {
-public:
-  /// Zero [n x n].
-  void resize(Eigen::Index n, Eigen::Index reach);
-  [[nodiscard]] double& at(Eigen::Index row, Eigen::Index column) { return rows_(column - row + reach_, row); }
-  void factorise();
-  void solve(double* x) const;
-
-private:
-  Eigen::Index reach_ = 0;
-  Eigen::MatrixXd rows_;   // column j of row i at (j - i + reach, i); exchanges fill `reach` more places
-  Eigen::MatrixXd lower_;  // multipliers [reach x n]
-  std::vector<Eigen::Index> pivot_;
-};
 
 /// (I - own A)^-1 of a RateMatrix A, own = H a(j,j) > 0. The states of a film but its last `reach` are a band,
 ///
@@ -39,7 +24,7 @@ public:
 
 private:
   struct Part {
-    PivotedBandLu band;
+    core::PivotedBand band;
     Eigen::MatrixXd response;  // B^-1 U: of the seen inputs, then of the last states [interior x ...]
     Eigen::MatrixXd forces;    // own P^T [interior x forces]
     Eigen::MatrixXd ends;      // own D^T of the last states' rows [interior x reach]
