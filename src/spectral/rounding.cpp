@@ -12,6 +12,9 @@ namespace {
 
 // Eigenvalues nearer than this part of themselves are looked at: may they be one, parted by rounding?
 constexpr double nearest_part = 1e-5;
+// The matrices themselves are rounded, in their assembly and, of a reduced machine, in its projection, which products
+// of theirs do not show: a real part below this part of the eigenvalue has no sign.
+constexpr double without_sign = 1e-12;
 
 // |A| |x| of all vectors x: the size of the sums that A x is made of.
 Eigen::MatrixXd sums(const Eigen::MatrixXd& a, const std::vector<Eigen::VectorXcd>& vectors) {
@@ -131,7 +134,7 @@ DensePencil::Doubt DensePencil::doubt() const {
                                     (sums_a.col(column) + std::abs(values_[k]) * sums_b.col(column)).transpose());
       if (std::isfinite(step + blur)) by_rows = std::min(moved, safety * (step + blur));
     }
-    if (asked(values_[k]) && !near[k]) out[k] = by_rows;
+    if (asked(values_[k]) && !near[k]) out[k] = std::max(by_rows, without_sign * std::abs(values_[k]));
     // Of a double eigenvalue each of the two is moved to first order by what parts them.
     if (near[k]) doubt.blur[k] = std::min(by_rows, nearest_part * std::abs(values_[k]));
   }

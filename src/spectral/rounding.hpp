@@ -21,9 +21,9 @@ public:
   /// For each eigenvalue added (eps (|A| + |lambda| |B|) |x| + |A x - lambda B x|) |y|/|y* B x| with the left vector y:
   /// what rounding may have done, and what the solver has left. At most the square root of eps times |A| + |lambda| |B|
   /// over |B|, which is what rounding does to a double eigenvalue with one vector. Zero for eigenvalues whose real part
-  /// exceeds asked_below of the largest modulus; those it cannot decide. Of one that grows at least ten times what a
-  /// step of Newton's method moves it by. Source: Stewart and Sun (1990), Matrix Perturbation Theory, sec. VI.2;
-  /// Frobenius norms.
+  /// exceeds asked_below of the largest modulus; those it cannot decide. At least 1e-12 |lambda|: the matrices are
+  /// rounded too. Of one that grows at least ten times what a step of Newton's method moves it by. Source: Stewart and
+  /// Sun (1990), Matrix Perturbation Theory, sec. VI.2; Frobenius norms.
   ///
   /// `blur` for eigenvalues that vibrate and have another one within 1e-5 of their size, whatever their real parts: by
   /// as much rounding may part a double one. It is ten times |y* (A x - lambda B x)| + eps |y| (|A| + |lambda| |B|)
