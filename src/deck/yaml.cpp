@@ -11,6 +11,7 @@
 #include "whirl/core/error.hpp"
 #include "whirl/core/printable.hpp"
 #include "whirl/deck/load.hpp"
+#include "yaml_fault.hpp"
 
 namespace whirl::deck {
 namespace {
@@ -39,9 +40,11 @@ public:
   Builder(std::shared_ptr<const std::string> source) : source_(std::move(source)) {}
 
   Node take() { return std::move(root_); }
+  [[nodiscard]] const std::vector<std::string>& anchor_names() const { return anchor_names_; }
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
+  void OnAnchor(const YAML::Mark&, const std::string& name) override { anchor_names_.push_back(name); }
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(leaf(mark, Node{}), anchor); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto it = anchors_.find(anchor);
@@ -157,6 +160,7 @@ private:
   std::shared_ptr<const std::string> source_;
   std::vector<Open> stack_;
   std::map<YAML::anchor_t, Node> anchors_;
+  std::vector<std::string> anchor_names_;
   Node root_;
   std::size_t n_nodes_ = 0;
 };
@@ -166,9 +170,9 @@ private:
 Node parse_yaml(std::string_view text, const std::string& source) {
   const auto name = std::make_shared<const std::string>(source);
   std::istringstream in{std::string(text)};
+  Builder builder(name);
   try {
     YAML::Parser parser(in);
-    Builder builder(name);
     if (!parser.HandleNextDocument(builder)) return Node{};
     Node root = builder.take();
     Builder rest(name);
@@ -184,7 +188,15 @@ Node parse_yaml(std::string_view text, const std::string& source) {
     const std::size_t tab = rest.substr(0, indent).find('\t');
     if (tab != std::string_view::npos)
       throw InputError(fmt::format("{}:{}:{}: a tab in the indentation; use spaces", source, line + 1, tab + 1));
-    throw InputError(fmt::format("{}:{}:{}: {}", source, line + 1, std::max(e.mark.column, 0) + 1, e.msg));
+    const int column = std::max(e.mark.column, 0);
+    if (const std::string alias = anchor_at(text, line, column);
+        e.msg == YAML::ErrorMsg::UNKNOWN_ANCHOR && !alias.empty())
+      throw InputError(fmt::format(
+          "{}:{}:{}: '*{}' repeats a value that '&{}' names, but there is no '&{}' above it{}", source, line + 1,
+          column + 1, alias, alias, alias,
+          builder.anchor_names().empty() ? std::string() : did_you_mean_one_of(alias, builder.anchor_names())));
+    const YamlFault fault = yaml_fault(text, line, column, e.msg);
+    throw InputError(fmt::format("{}:{}:{}: {}", source, fault.line, fault.column, fault.message));
   }
 }
 

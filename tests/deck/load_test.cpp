@@ -80,6 +80,55 @@ TEST(Yaml, WhatItsParserWouldLetPass) {
   EXPECT_EQ(deck::parse_yaml("# nothing\n", "d.yaml").kind, deck::Node::Kind::none);
 }
 
+// The parser stops where it cannot go on: the fault is often in the line above.
+TEST(Yaml, TheLineOfAFaultAndWhatIsLikelyWrong) {
+  struct Case {
+    const char *text, *place, *words;
+  };
+  const Case cases[] = {
+      // A missing colon or space.
+      {"a:\n  node 5\n  b: 1\n", "2:3", "'node 5' is no key with a value: a colon with a space behind it is missing"},
+      {"a:\n  node:5  # five\n\n  b: 1\n", "2:3",
+       "'node:5' is no key with a value: the space behind the colon is missing"},
+      {"a: 1\nspeed 3\nb: 1\n", "2:1", "'speed 3' is no key with a value: a colon"},
+      {"a:\n  - static\n    speed: 1\n", "2:3", "'- static' is no key with a value: a colon"},
+      // A colon inside a plain value.
+      {"title: A fan: a trial\n", "1:13", "a value with ': ' in it needs quotes"},
+      {"a: 1\n'title': A fan: a trial\n", "2:15", "a value with ': ' in it needs quotes"},
+      // Indentation.
+      {"a:\n  b: 1\n   c: 2\n", "3:5", "indented more than line 2, which has a value already"},
+      {"title: A fan\n  of ours\n  b: 1\n", "3:4", "indented more than line 1, which has a value already"},
+      {"a:\n    b: 1\n  c: 2\n", "3:3", "begins in column 3, line 2 in column 5"},
+      {"a:\n  - b: 1\n   - c: 2\n", "3:4", "begins in column 4, line 2 in column 3"},
+      {"a:\n  - b\n  c: 2\n", "3:3", "is '- ' missing before it"},
+      {"a:\n  b: 1\n  - c\n", "3:3", "an item of a list among the keys of a map"},
+      {"a: - b\n", "1:4", "an item of a list begins on a line of its own"},
+      // Brackets: those in quotes and comments are none.
+      {"# {\nt: '{['\na: {b: 1, c: 2\nd: 3\n", "3:4", "'{' is not closed before line 4: is '}' missing, or a comma?"},
+      {"a: [1, 2\n", "1:4", "'[' is not closed"},
+      {"a: [&s {b: 1, *s]\n", "1:17", "'}' is missing before ']'"},
+      {"a: [&s {b: 1, c: 2]\n", "1:19", "'}' is missing before ']': it closes the '{' of line 1, column 8"},
+      {"a: {b: 1}}\n", "1:10", "'}' closes nothing"},
+      {"a: {b: 1 c: 2}\n", "1:11", "a comma is missing"},
+  };
+  for (const auto& [text, place, words] : cases) {
+    const std::string said = yaml_refusal(text);
+    EXPECT_TRUE(said.starts_with(std::string("d.yaml:") + place + ": ")) << text << said;
+    EXPECT_NE(said.find(words), std::string::npos) << text << said;
+  }
+}
+
+TEST(Yaml, AnAliasOfNothingIsNamed) {
+  EXPECT_EQ(yaml_refusal("a: &bore {b: 1}\nc: {d: *bor}\n"),
+            "d.yaml:2:8: '*bor' repeats a value that '&bor' names, but there is no '&bor' above it (did you mean "
+            "'bore'?)");
+  EXPECT_EQ(
+      yaml_refusal("a: &x 1\nb: &y 2\nc:\n  - *there\n"),
+      "d.yaml:4:5: '*there' repeats a value that '&there' names, but there is no '&there' above it; there are x, y");
+  EXPECT_EQ(yaml_refusal("a: *nowhere\n"),
+            "d.yaml:1:4: '*nowhere' repeats a value that '&nowhere' names, but there is no '&nowhere' above it");
+}
+
 TEST(Yaml, AliasesOfAliasesDoNotFillTheMemory) {
   std::string text = "a0: &a0 [1, 2, 3, 4, 5, 6, 7, 8, 9]\n";
   for (int i = 1; i < 12; ++i) {
