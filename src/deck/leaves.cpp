@@ -10,6 +10,7 @@
 #include "name_of_value.hpp"
 #include "plausible.hpp"
 #include "schema.hpp"
+#include "synonyms.hpp"
 #include "whirl/core/printable.hpp"
 #include "whirl/deck/description.hpp"
 
@@ -31,6 +32,13 @@ bool is_scalar(const Node& node, const std::string& wanted, Reading& r) {
 
 std::string unit_words(const std::string& unit) {
   return unit == "1" ? "number" : unit == "*" ? "quantity with the unit of the parameter" : "quantity in " + unit;
+}
+
+// The end of a range that was meant.
+std::string end_hint(const std::string& word) {
+  for (const Synonym& meant : synonyms(word))
+    if (meant.key == "from" || meant.key == "to") return fmt::format(" (did you mean '{}'?)", meant.key);
+  return did_you_mean(word, {"from", "to"});
 }
 
 // The unit behind a number in messages.
@@ -144,7 +152,7 @@ public:
     if (node.kind != Node::Kind::map) return r.problems.add(node.place, wanted);
     for (const Node& i : node.items)
       if (i.key != "from" && i.key != "to")
-        r.problems.add(i.key_place, fmt::format("unknown key '{}'{}", i.key, did_you_mean(i.key, {"from", "to"})));
+        r.problems.add(i.key_place, fmt::format("unknown key '{}'{}", i.key, end_hint(i.key)));
     const Node* from = node.find("from");
     const Node* to = node.find("to");
     if (!from || !to) return r.problems.add(node.place, wanted);
@@ -184,7 +192,7 @@ public:
   const Spec* spec() const override { return &spec_; }
   Leaf leaf(const void* preset, std::span<const std::string> path, const Node*) const override {
     if (path.size() > 1 || (path[0] != "from" && path[0] != "to"))
-      throw InputError(fmt::format("a range has no '{}'{}", path[0], did_you_mean(path[0], {"from", "to"})));
+      throw InputError(fmt::format("a range has no '{}'{}", path[0], end_hint(path[0])));
     return {&spec_, preset ? *write(preset).find(path[0]) : Node{}};
   }
 

@@ -8,6 +8,7 @@
 #include "known.hpp"
 #include "paths.hpp"
 #include "schema.hpp"
+#include "synonyms.hpp"
 #include "whirl/deck/description.hpp"
 
 namespace whirl::deck {
@@ -67,9 +68,36 @@ bool is_of_another_kind(const Node& value, const Option& o) {
   }
 }
 
+// The option that a word of the field means here, where the value does not say that it is another quantity.
+std::string synonym_hint(const Structure& s, const std::string& word, const Node& value) {
+  for (const Synonym& meant : synonyms(word)) {
+    double factor = 1;
+    const std::string key(meant.key);
+    const Option* o = s.option(key);
+    if (!o) o = s.aliased(key, factor);
+    if (!o || (meant.change.empty() && is_of_another_kind(value, *o))) continue;
+    return meant.change.empty() ? fmt::format(" (did you mean '{}'?)", key)
+                                : fmt::format(" (did you mean '{}'? It is {})", key, meant.change);
+  }
+  return {};
+}
+
+// The key and its value where they are one word: the colon is missing, or the space behind it.
+std::string parted(const Structure& s, const Node& entry) {
+  const std::size_t k = entry.key.find_first_of(" :");
+  if (entry.kind != Node::Kind::none || k == std::string::npos) return {};
+  const std::string key = entry.key.substr(0, k);
+  const std::size_t value = entry.key.find_first_not_of(" :", k);
+  double factor = 1;
+  if (value == std::string::npos || (!s.option(key) && !s.aliased(key, factor))) return {};
+  return fmt::format(" (did you mean '{}: {}'?)", key, entry.key.substr(value));
+}
+
 // The key that was meant, where the value does not say that it is another quantity; the word for another quantity, a
 // diameter for a radius, by itself.
 std::string hint_for(const Structure& s, const Node& entry) {
+  if (std::string hint = parted(s, entry); !hint.empty()) return hint;
+  if (std::string hint = synonym_hint(s, entry.key, entry); !hint.empty()) return hint;
   std::vector<std::string> words;
   for (const Option& o : s.options) {
     if (is_of_another_kind(entry, o)) continue;
@@ -80,6 +108,12 @@ std::string hint_for(const Structure& s, const Node& entry) {
   double factor = 1;
   if (const Option* o = s.aliased(near, factor); o && factor == 1) near = o->key;
   return near.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", near);
+}
+
+// The same for the step of a path.
+std::string hint_for(const Structure& s, const std::string& step) {
+  const std::string hint = synonym_hint(s, step, {});
+  return hint.empty() ? did_you_mean(step, s.keys()) : hint;
 }
 
 // The entry of `node` for `o`, under its key or another word for it, which goes to `meant`; null if there is none.
@@ -211,7 +245,7 @@ Node Structure::schema(bool whole) const {
 Access Structure::find(void* object, std::span<const std::string> path) const {
   if (path.empty()) return {};
   const Option* o = option_of(path.front(), object);
-  if (!o) throw InputError(fmt::format("there is no option '{}'{}", path.front(), did_you_mean(path.front(), keys())));
+  if (!o) throw InputError(fmt::format("there is no option '{}'{}", path.front(), hint_for(*this, path.front())));
   if (!applies(*o, object)) throw InputError(fmt::format("option '{}' does not apply here", path.front()));
   Access a = o->codec->find(o->member(object), path.subspan(1));
   a.continuable = a.continuable || o->continuable;
@@ -264,8 +298,7 @@ Leaf leaf_of(const Structure& s, const void* preset, std::span<const std::string
   double factor = 1;
   const Option* o = s.option(path.front());
   if (!o) o = s.aliased(path.front(), factor);
-  if (!o)
-    throw InputError(fmt::format("there is no option '{}'{}", path.front(), did_you_mean(path.front(), s.keys())));
+  if (!o) throw InputError(fmt::format("there is no option '{}'{}", path.front(), hint_for(s, path.front())));
   for (const Option& other : s.options)
     if (other.key == o->key && applies_in(s, other, object, given)) o = &other;
   const void* value = o->member(const_cast<void*>(object));

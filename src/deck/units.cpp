@@ -98,10 +98,10 @@ ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, doub
 
 const std::vector<std::string>& common_units() {
   static const std::vector<std::string> units{
-      "m",      "mm",    "um",    "kg",    "g",    "s",     "ms",   "N",     "kN",     "Pa", "kPa",
-      "MPa",    "GPa",   "bar",   "K",     "degC", "rad",   "deg",  "rpm",   "rad/s",  "Hz", "Pa s",
-      "mPa s",  "cP",    "N/m",   "N s/m", "kg m", "m/s",   "mm/s", "m/s^2", "kg/m^3", "W",  "kW",
-      "J/kg/K", "W/m/K", "m^2/s", "N m",   "g mm", "kg mm", "byte", "MB",    "GB",     "GiB"};
+      "m",      "mm",    "um",    "kg",    "g",    "s",     "ms",     "N",     "kN",     "Pa", "kPa",
+      "MPa",    "GPa",   "bar",   "K",     "degC", "rad",   "deg",    "rpm",   "rad/s",  "Hz", "Pa s",
+      "mPa s",  "cP",    "N/m",   "N s/m", "kg m", "m/s",   "mm/s",   "m/s^2", "kg/m^3", "W",  "kW",
+      "J/kg/K", "W/m/K", "m^2/s", "N m",   "g mm", "kg mm", "kg m^2", "byte",  "MB",     "GB", "GiB"};
   return units;
 }
 
@@ -148,7 +148,15 @@ Unit parse_unit(std::string_view text, std::string_view si = "*") {
     return u;
   }
   const UnitPtr unit(ut_parse(unit_system(), std::string(text).c_str(), UT_UTF8));
-  if (!unit) throw InputError(fmt::format("unknown unit '{}'{}", text, did_you_mean(text, common_units_of(si))));
+  if (!unit) {
+    // Which the nearest spelling does not find.
+    static const std::map<std::string_view, const char*> meant{{"U/min", "rpm"}, {"r/min", "rpm"}, {"cst", "cSt"},
+                                                               {"CST", "cSt"},   {"lbs", "lb"},    {"kgm2", "kg m^2"}};
+    const auto known = meant.find(text);
+    throw InputError(fmt::format("unknown unit '{}'{}", text,
+                                 known != meant.end() ? fmt::format(" (did you mean '{}'?)", known->second)
+                                                      : did_you_mean(text, common_units_of(si))));
+  }
   UnitParts s;
   if (ut_accept_visitor(unit.get(), &visitor, &s) != UT_SUCCESS || !s.coherent)
     throw InputError(fmt::format("unit '{}' cannot be used here", text));
@@ -215,16 +223,30 @@ std::string expected(std::string_view si) {
   return it != examples.end() ? it->second : fmt::format("a value in {}", si);
 }
 
+// Why a unit of another quantity may have been written, and what to write instead.
+std::string mixed_up(const Unit& u, std::string_view si) {
+  struct Pair {
+    std::string_view wanted, given;
+    const char* hint;
+  };
+  static constexpr std::array<Pair, 6> pairs{
+      {{"rad/s", "Hz", "a frequency is not a speed: 1 Hz is 60 rpm"},
+       {"Hz", "rad/s", "a speed is not a frequency: 60 rpm is 1 Hz"},
+       {"Pa s", "m^2/s",
+        "a kinematic viscosity: its product with the density is the viscosity, mPa s = cSt x density / (1000 kg/m^3)"},
+       {"kg", "N", "a weight is not a mass: a mass of 1 kg weighs 9.81 N"},
+       {"N", "kg", "a mass is not a force: 1 kg weighs 9.81 N, which is 1 kgf"},
+       {"kg m^2", "m^4", "a second moment of area is not the moment of inertia of a mass"}}};
+  for (const auto& [wanted, given, hint] : pairs)
+    if (si == wanted && u.powers == parse_unit(given).powers) return fmt::format(" ({})", hint);
+  return {};
+}
+
 void require_kind(const Unit& u, std::string_view unit, std::string_view si) {
   if (si == "*") return;
   const Unit wanted = parse_unit(plain(si));
-  if (u.powers != wanted.powers) {
-    std::string hint;
-    if (si == "rad/s" && (unit == "Hz" || unit == "1/s" || unit == "1/min" || unit == "s-1" || unit == "min-1"))
-      hint = " (a frequency is not a speed: 1 Hz is 60 rpm)";
-    if (si == "Hz" && u.powers.count("rad")) hint = " (a speed is not a frequency: 60 rpm is 1 Hz)";
-    throw InputError(fmt::format("'{}' does not fit: expected {}{}", unit, expected(si), hint));
-  }
+  if (u.powers != wanted.powers)
+    throw InputError(fmt::format("'{}' does not fit: expected {}{}", unit, expected(si), mixed_up(u, si)));
   if (si == difference && u.offset != 0)
     throw InputError(fmt::format("'{}' is a temperature, expected {} (in K)", unit, expected(si)));
 }

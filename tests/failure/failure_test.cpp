@@ -92,3 +92,59 @@ TEST(WrongDecks, AllProblemsOfADeckAreToldAtOnce) {
     EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 2) << all;
   }
 }
+
+// Words of the field for an option of another name. A hint never changes the quantity: it says how one becomes the
+// other.
+TEST(WrongDecks, WordsOfTheFieldAreUnderstood) {
+  const std::string disc = "rotor.discs.1={node: 3, mass: 100 kg, ", film = "bearings.B1.film={type: linear, ",
+                    geometry = "bearings.B1.geometry={type: cylindrical, length: 50 mm, ",
+                    segment = "rotor.segments.1={rotor: A, length: 0.2 m, outer_mass_diameter: 100 mm, ";
+  const std::pair<std::string, const char*> cases[] = {
+      {"rotor.discs.1={node: 3, weight: 100 kg}",
+       "'weight' (did you mean 'mass'? It is the weight divided by 9.81 m/s^2)"},
+      {"rotor.discs.1={node: 3, weight: 981 N}", "(did you mean 'mass'? It is the weight divided by 9.81 m/s^2)"},
+      {disc + "Ip: 1 kg m^2}", "(did you mean 'polar_inertia'?)"},
+      {disc + "J_p: 1 kg m^2}", "(did you mean 'polar_inertia'?)"},
+      {disc + "It: 1 kg m^2}", "(did you mean 'diametral_inertia'?)"},
+      {disc + "Id: 1 kg m^2}", "(did you mean 'diametral_inertia'?)"},
+      {disc + "transverse-inertia: 1 kg m^2}", "(did you mean 'diametral_inertia'?)"},
+      {disc + "ID: 20 mm}", "(did you mean 'inner_diameter'?)"},
+      {disc + "radius: 200 mm}", "(did you mean 'outer_diameter'? It is twice the radius)"},
+      {disc + "position: 400 mm}", "(did you mean 'node'? It is the number of a node)"},
+      {"rotor.segments.1={rotor: A, span: 0.2 m, outer_mass_diameter: 100 mm}", "(did you mean 'length'?)"},
+      {segment + "OD: 100 mm}", "(did you mean 'outer_diameter'?)"},
+      {"rotor.material={E: 210 GPa}", "(did you mean 'modulus'?)"},
+      {"rotor.material={modulus: 210 GPa, nu: 0.3}", "(did you mean 'poisson'?)"},
+      {geometry + "radius: 50 mm, radial_clearance: 100 um}", "(did you mean 'clearance'?)"},
+      {geometry + "radius: 50 mm, Cd: 200 um}", "'clearance'? It is the radial clearance, half of the diametral one)"},
+      {geometry + "D: 100 mm, clearance: 100 um}", "(did you mean 'diameter'?)"},
+      {"lubricants.oil={mu: 20 mPa s, density: 860 kg/m^3}", "(did you mean 'viscosity'?)"},
+      {"lubricants.oil={kinematic_viscosity: 20 mm^2/s, density: 860 kg/m^3}",
+       "'viscosity'? It is the kinematic viscosity times the density)"},
+      {"lubricants.oil.viscosity=46 cSt",
+       "(a kinematic viscosity: its product with the density is the viscosity, mPa s = cSt x density / (1000 kg/m^3))"},
+      {"lubricants.oil.viscosity=46 cst", "unknown unit 'cst' (did you mean 'cSt'?)"},
+      {film + "k: 1e8 N/m, damping: 1e5 N s/m}", "(did you mean 'stiffness'?)"},
+      {film + "stiffness: 1e8 N/m, damping_coefficient: 1e5 N s/m}", "(did you mean 'damping'?)"},
+      {film + "stiffness: 1e8 N/m, c: 1e5 N s/m}", "(did you mean 'damping'?)"},
+      {"operating_speed=3000 rpm", "(did you mean 'service_speed'?)"},
+      {"service_speed=50 min^-1", "(a frequency is not a speed: 1 Hz is 60 rpm)"},
+      {"rotor.discs.1.mass=981 N", "(a weight is not a mass: a mass of 1 kg weighs 9.81 N)"},
+      {"studies=[{static: {frequency: 50 Hz}}]", "(did you mean 'speed'? It is in rpm: 1 Hz is 60 rpm)"},
+      {"studies=[{modes: {range: {start: 100 rpm, end: 200 rpm}}}]", "unknown key 'start' (did you mean 'from'?)"},
+      {"shaft={}", "(did you mean 'rotor'?)"},
+      // A colon or its space that is missing.
+      {"rotor.discs.1={node: 3, mass:100 kg}", "'mass:100 kg' (did you mean 'mass: 100 kg'?)"},
+      {"rotor.discs.1={node: 3, mass 100 kg}", "'mass 100 kg' (did you mean 'mass: 100 kg'?)"},
+      // Another quantity is not meant.
+      {disc + "Ip: 1 m}", "unknown key 'Ip'; valid keys are"},
+  };
+  for (const auto& [change, words] : cases) {
+    try {
+      (void)study::load(MPI_COMM_WORLD, folder + "/base/rig.yaml", {change});
+      ADD_FAILURE() << change << " was accepted";
+    } catch (const core::InputError& e) {
+      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << change << "\n" << e.what();
+    }
+  }
+}
