@@ -63,6 +63,63 @@ void judge_films(StudyResult& result, const system::Machine& machine, const Stud
   warn_of_films(result.summary, system::train_of(machine), asked);
 }
 
+// Outer diameter of the thicker segment beside a node, 0 where there is none.
+double shaft_at(const rotor::Options& rotor, int node) {
+  const auto& segments = rotor.segments;
+  if (node < 1 || static_cast<std::size_t>(node) > segments.size() + 1) return 0;
+  double shaft = 0;
+  const auto left = static_cast<std::size_t>(node) - 1;
+  if (left > 0) shaft = rotor::section_at(segments[left - 1], 1).outer_mass_diameter;
+  if (left < segments.size()) shaft = std::max(shaft, rotor::section_at(segments[left], 0).outer_mass_diameter);
+  return shaft;
+}
+
+// A disc of a mass that its shaft could not carry or would not feel, or of inertias that no body of its mass has: a
+// wrong unit is likely. Bodies are compared with steel, whose density shafts without mass in decks do not have.
+void judge_discs(const rotor::Options& rotor, std::vector<std::string>& lines) {
+  constexpr double steel = 7850, heaviest = 100, lightest = 1e-3, longest = 20, thinnest = 1e-3, widest = 5;
+  rotor::Material of_steel = rotor.material;
+  of_steel.density = steel;
+  double length = 0, shaft_mass = 0;
+  for (const rotor::Segment& s : rotor.segments) {
+    length += s.length;
+    shaft_mass += rotor::segment_mass(s, of_steel);
+  }
+  for (std::size_t i = 0; i < rotor.discs.size(); ++i) {
+    const rotor::Disc disc = rotor::resolved(rotor.discs[i], rotor.material);
+    const double m = disc.mass, shaft = shaft_at(rotor, disc.node);
+    if (!(m > 0) || !(shaft > 0)) continue;
+    const std::size_t before = lines.size();
+    const auto ask = [&](const std::string& what) {
+      lines.push_back(fmt::format("rotor.discs.{}: {}: is a unit wrong?", i + 1, what));
+    };
+    const double piece = steel * std::numbers::pi / 4 * shaft * shaft * shaft;
+    if (m > heaviest * shaft_mass)
+      ask(fmt::format("its mass of {:.4g} kg is {:.3g} times that of the whole shaft in steel, {:.4g} kg", m,
+                      m / shaft_mass, shaft_mass));
+    else if (m < lightest * piece)
+      ask(fmt::format("its mass of {:.4g} kg is {:.3g} of that of the shaft at its node over one diameter, {:.4g} kg",
+                      m, m / piece, piece));
+    if (disc.polar_inertia > 0 && lines.size() == before) {
+      // I_p = m R^2/2 and m = rho pi R^2 t.
+      const double radius = std::sqrt(2 * disc.polar_inertia / m);
+      const double thickness = m / (steel * std::numbers::pi * radius * radius), part = thickness / radius;
+      if (part > longest || part < thinnest || radius > widest * length)
+        ask(fmt::format(
+            "with a mass of {:.4g} kg and a polar inertia of {:.4g} kg m^2 it would be a cylinder of steel of "
+            "{:.4g} m radius and {:.4g} m length",
+            m, disc.polar_inertia, radius, thickness));
+    }
+    // I_d = I_p/2 + m t^2/12.
+    const double along = std::sqrt(std::max(12 * (disc.diametral_inertia - disc.polar_inertia / 2) / m, 0.0));
+    if (along > widest * length && lines.size() == before)
+      ask(fmt::format(
+          "with a mass of {:.4g} kg and a diametral inertia of {:.4g} kg m^2 it would be {:.4g} m long, and the "
+          "shaft is {:.4g} m",
+          m, disc.diametral_inertia, along, length));
+  }
+}
+
 // Proportions of a bearing that no usual machine has: a wrong unit is likely.
 void judge_bearing(const system::Machine& machine, const system::Bearing& bearing, std::vector<std::string>& lines) {
   if (!bearing.geometry || !(bearing.geometry->radius > 0)) return;
@@ -76,13 +133,8 @@ void judge_bearing(const system::Machine& machine, const system::Bearing& bearin
                     g.clearance * 1e6, g.radius * 1e3, part * 1e3));
   if (const double ratio = g.length / (2 * g.radius); ratio > longest)
     ask(fmt::format("a length of {:.4g} mm is {:.3g} diameters, usual are 0.2 to 1.5", g.length * 1e3, ratio));
-  const auto& segments = machine.rotor.segments;
-  if (bearing.node < 1 || static_cast<std::size_t>(bearing.node) > segments.size() + 1) return;
-  double shaft = 0;  // diameter of the thicker segment beside the node
-  const auto left = static_cast<std::size_t>(bearing.node) - 1;
-  if (left > 0) shaft = rotor::section_at(segments[left - 1], 1).outer_mass_diameter;
-  if (left < segments.size()) shaft = std::max(shaft, rotor::section_at(segments[left], 0).outer_mass_diameter);
-  if (const double bore = 2 * g.radius; shaft > 2 * bore || (shaft > 0 && shaft < bore / 2))
+  const double shaft = shaft_at(machine.rotor, bearing.node);
+  if (const double bore = 2 * g.radius; shaft > 0 && (shaft > 2 * bore || shaft < bore / 2))
     ask(fmt::format("a shaft of {:.4g} mm at its node in a bore of {:.4g} mm", shaft * 1e3, bore * 1e3));
 }
 
@@ -92,8 +144,10 @@ std::vector<std::string> machine_warnings(const system::Machine& machine) {
   std::vector<std::string> lines;
   if (const double up = system::is_rotor(machine) ? system::lateral(machine.gravity)[1] : 0; up > 0)
     lines.push_back(fmt::format("gravity is {:.6g} m/s^2 along +y: the weight points upwards", up));
-  if (system::is_rotor(machine))
+  if (system::is_rotor(machine)) {
     for (const system::Bearing& b : machine.bearings) judge_bearing(machine, b, lines);
+    if (machine.rotor.type == rotor::Options::Type::shaft) judge_discs(machine.rotor, lines);
+  }
   for (const system::Unbalance& u : machine.unbalance) {
     if (!u.grade) continue;
     double sum = 0;

@@ -8,7 +8,8 @@
 
 namespace whirl::study {
 
-/// Fractions of a balance grade that do not sum to one, a weight that points upwards: a line each.
+/// Fractions of a balance grade that do not sum to one, a weight that points upwards, bearings and discs of
+/// proportions that no usual machine has: a line each.
 [[nodiscard]] std::vector<std::string> machine_warnings(const system::Machine& machine);
 
 /// Speeds of `study` at which the coefficients of a bearing or an element are not known, a line for each.

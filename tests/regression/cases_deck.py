@@ -83,6 +83,17 @@ def signs(h):
                              ("diameter", "400 mm", "a shaft of 80 mm at its node in a bore of 400 mm"), ("clearance", "80 um", None)):
         told = say(h, "check", own, "--set", f"bearings.*.geometry.{key}={text}")
         h.true(f"a bearing with a {key} of {text}", words in told if words else "unit wrong" not in told, told)
+    # Discs, beside a shaft of 7850 kg/m^3 pi/4 (80 mm)^2 0.96 m = 37.88 kg: R = sqrt(2 I_p/m), t = m/(rho pi R^2).
+    for key, text, words in (("mass", "40 t", "is 1.06e+03 times that of the whole shaft in steel, 37.88 kg"),
+                             ("mass", "40 g", "a cylinder of steel of 12.25 m radius and 1.081e-08 m length"),
+                             ("polar_inertia", "3 g mm^2", "a cylinder of steel of 1e-05 m radius and 2.433e+07 m length"),
+                             ("diametral_inertia", "16e3 kg m^2", "it would be 56.57 m long, and the shaft is 0.96 m"),
+                             ("mass", "300 kg", None), ("mass", "20 kg", None)):
+        told = say(h, "check", own, "--set", f"rotor.discs.1.{key}={text}")
+        lines = [line for line in told.splitlines() if "unit wrong" in line and "twice the diametral" not in line]
+        h.true(f"a disc with a {key} of {text}", len(lines) == 1 and words in lines[0] if words else not lines, told)
+    told = say(h, "check", own, "--set", "rotor.discs.2={node: 17, mass: 1 g}")
+    h.true("a disc that its shaft would not feel", "0.000317 of that of the shaft at its node over one diameter, 3.157 kg" in told, told)
     here = "bearings.left.elevation"
     for text, after in (("by -20 um", "30 um"), ("by +20 um", "70 um"), ("x1.2", "60 um"), ("+20 %", "60 um"), ("-20 %", "40 um"),
                         ("=-20 um", "-20 um"), ("=+20 um", "20 um")):
