@@ -124,6 +124,16 @@ def warning_lines(warnings, width, most=3):
     return lines + ([f"and {left} more warning{'s' if left > 1 else ''} in the report"] if left else [])
 
 
+def warnings_below(study, what, width):
+    """The warnings of a study below the first of its pictures; below each other one how many there are and where they stand."""
+    if not study.warnings:
+        return []
+    study.with_warnings = study.with_warnings or what
+    if what == study.with_warnings:
+        return warning_lines(study.warnings, width)
+    return [f"{len(study.warnings)} warning{'s' if len(study.warnings) > 1 else ''}: see the first picture of this study, or the report"]
+
+
 def fewer_ticks(figure):
     """Fewer numbers along x: those of five digits and more would run into each other below panels that stand side by side."""
     from matplotlib.ticker import AutoLocator, MaxNLocator
@@ -141,7 +151,7 @@ def save(figure, study, what, note="", handles=(), columns=6, of=""):
     columns = columns_of([h.get_label() for h in handles], figure.get_figwidth(), columns)
     rows = -(-len(handles) // columns)
     lines = textwrap.wrap(note, max(40, int(17.5 * figure.get_figwidth())))
-    warned = warning_lines(study.warnings, max(40, int(14.5 * figure.get_figwidth())))
+    warned = warnings_below(study, what, max(40, int(14.5 * figure.get_figwidth())))
     # A figure grows by what its note needs beyond one line, its legend beyond two, and by its warnings.
     lowest = 0.16 * len(warned)
     height += 0.15 * max(0, len(lines) - 1) + 0.215 * max(0, rows - 2) + lowest

@@ -14,6 +14,8 @@ COLOURED = ("cycle_branch", "locus", "run_up", "bearing_map")
 class Subject(whirl.Study):
     """A study as the pictures see it."""
 
+    with_warnings = ""  # its picture that bears its warnings
+
     @property
     def run_title(self):
         return self.results.title

@@ -144,7 +144,7 @@ def options(folder):
 
 
 def warnings(folder):
-    """Warnings of a study stand in the summary of the page, in its section, and below each of its pictures."""
+    """Warnings of a study stand in the summary of the page, in its section, and below the first of its pictures."""
     sentence = "the linear motion leaves bearing B3 -4 um of film: no answer between 2120 and 2260 rpm"
     with results_with(folder, lambda s, _: s["generator pair"].update({"warnings": [sentence, "second <b>"]})) as results:
         text = report.page_of(results)
@@ -156,11 +156,14 @@ def warnings(folder):
         style.write, kept = (lambda figure, stem: written.extend(t.get_text() for t in figure.texts) or []), style.write
         try:
             style.save(figure, study, "response")
+            first = len(written)
+            style.save(style.plt.figure(), study, "response2")
         finally:
             style.write = kept
     assert text.count(sentence.replace("um", "\u00b5m")) == 2 and "second &lt;b&gt;" in text, text.count(sentence)
     assert lines == [f"Warning: {sentence}", "Warning: second <b>"], lines
-    assert any(sentence in t.replace("\n", " ") for t in written), written
+    assert any(sentence in t.replace("\n", " ") for t in written[:first]), written
+    assert not any(sentence[:20] in t for t in written[first:]) and any("2 warnings: see the first picture" in t for t in written[first:]), written
     assert style.warning_lines(["a"] * 5, 80)[-1] == "and 2 more warnings in the report"
 
 
