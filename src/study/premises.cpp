@@ -147,6 +147,7 @@ std::vector<std::string> machine_warnings(const system::Machine& machine) {
   if (system::is_rotor(machine)) {
     for (const system::Bearing& b : machine.bearings) judge_bearing(machine, b, lines);
     if (machine.rotor.type == rotor::Options::Type::shaft) judge_discs(machine.rotor, lines);
+    for (std::string& line : lifted_by_weight(machine)) lines.push_back(std::move(line));
   }
   for (const system::Unbalance& u : machine.unbalance) {
     if (!u.grade) continue;

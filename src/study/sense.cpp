@@ -10,6 +10,7 @@
 
 #include "study/bearing/gas_point.hpp"
 #include "whirl/film/contract/facts.hpp"
+#include "whirl/rotor/shaft.hpp"
 
 namespace whirl::study {
 namespace {
@@ -179,6 +180,64 @@ std::vector<std::string> negative_damping(const system::Machine& machine) {
   for (const system::Bearing& b : machine.bearings)
     if (const auto* film = film::find<film::Linear>(b.film)) look("bearings." + b.name, film->damping, film->table);
   for (const system::Element& e : machine.elements) look("elements." + e.name, e.damping, e.table);
+  return lines;
+}
+
+std::vector<std::pair<std::string, io::Quantity>> lifted_journals(const io::StudySummary& summary) {
+  constexpr std::string_view head = "load.";
+  std::vector<std::pair<std::string, io::Quantity>> out;
+  double sum = 0, most = 0;
+  for (const auto& [name, q] : summary.values) {
+    if (!name.starts_with(head) || !std::isfinite(q.value)) continue;
+    sum += q.value;
+    most = std::max(most, std::abs(q.value));
+    if (q.value + std::max(q.bar(), 0.0) < 0) out.emplace_back(name.substr(head.size()), q);
+  }
+  // What is nothing beside the largest load is rounding.
+  std::erase_if(out, [&](const auto& lifted) { return lifted.second.value > -1e-6 * most; });
+  return sum > 0 ? out : std::vector<std::pair<std::string, io::Quantity>>{};
+}
+
+void warn_of_lifted(io::StudySummary& summary) {
+  Sentences sentences;
+  for (const auto& [bearing, load] : lifted_journals(summary))
+    sentences.add(
+        bearing, load.value,
+        "load in N, which points upwards: the shaft lifts the journal into the upper half of its bearing. Are "
+        "the masses, the nodes and 'elevation' right?");
+  sentences.put(summary);
+}
+
+std::vector<std::string> lifted_by_weight(const system::Machine& machine) {
+  const auto gravity = system::lateral(machine.gravity);
+  if (!system::is_rotor(machine) || machine.rotor.type == rotor::Options::Type::rigid) return {};
+  if (machine.bearings.size() != 2 || !machine.elements.empty() || !(gravity[1] < 0)) return {};
+  const std::vector<double> z = rotor::node_positions(machine.rotor), masses = rotor::node_masses(machine.rotor);
+  double weight = 0, moment = 0;  // downwards, about node 1
+  const auto press = [&](double force, double at) {
+    weight += force;
+    moment += force * at;
+  };
+  for (std::size_t k = 0; k < z.size(); ++k) press(-gravity[1] * masses[k], z[k]);
+  for (const rotor::Disc& d : machine.rotor.discs)
+    moment -= gravity[1] * rotor::resolved(d, machine.rotor.material).mass * d.offset;
+  for (const system::StaticLoad& l : machine.loads) {
+    if (l.moment) return {};
+    press(-l.force[1], z[static_cast<std::size_t>(l.node - 1)]);
+  }
+  const auto place = [&](std::size_t b) { return z[static_cast<std::size_t>(machine.bearings[b].node - 1)]; };
+  const double span = place(1) - place(0);
+  if (span == 0 || !(weight > 0)) return {};
+  std::vector<std::string> lines;
+  for (std::size_t b = 0; b < 2; ++b) {
+    const double load = (b == 0 ? 1 : -1) * (weight * place(1 - b) - moment) / span;
+    if (load < -1e-6 * weight)
+      lines.push_back(
+          fmt::format("bearing {}: its load is {:.4g} N by the weight of the shaft, {:.4g} N, and points upwards: the "
+                      "shaft lifts the "
+                      "journal. Are the masses and nodes right?",
+                      machine.bearings[b].name, load, weight));
+  }
   return lines;
 }
 

@@ -2,6 +2,7 @@
 // Numbers of a machine and its films that are unusual: warnings with numbers, never refusals.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "whirl/film/contract/response.hpp"
@@ -31,6 +32,16 @@ inline constexpr double white_metal_load = 5e6, white_metal_pressure = 20e6;  //
 
 /// Linear bearings and elements whose direct damping is negative, a line each: they feed the whirl.
 [[nodiscard]] std::vector<std::string> negative_damping(const system::Machine& machine);
+
+/// Bearings whose journal the shaft lifts, with the negative load [N]: `load.NAME` of a static position, beyond its
+/// bar, where the bearings together carry a weight that points down.
+[[nodiscard]] std::vector<std::pair<std::string, io::Quantity>> lifted_journals(const io::StudySummary& summary);
+
+/// The same of a shaft that two bearings alone hold, by the balance of its moments: a line each.
+[[nodiscard]] std::vector<std::string> lifted_by_weight(const system::Machine& machine);
+
+/// Warns of lifted_journals().
+void warn_of_lifted(io::StudySummary& summary);
 
 /// Puts specific load [Pa] and Reynolds number of a film with a bore, and the Knudsen number of one of gas, below
 /// `head`.

@@ -19,6 +19,7 @@
 #include "study/bars/unresolved.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/separation.hpp"
+#include "study/sense.hpp"
 
 namespace whirl::study {
 namespace {
@@ -83,18 +84,18 @@ public:
     if (!above_) above_ = std::move(peak_above_);
     // What a film has no room for is no vibration where another study gives one.
     if (!vibration_) vibration_ = std::move(beyond_films_);
-    for (const auto* fact :
-         {&threshold_, &whirl_, &decrement_, &below_, &above_, &film_, &pressure_, &temperature_, &vibration_})
+    for (const auto* fact : {&threshold_, &whirl_, &decrement_, &below_, &above_, &lifted_, &film_, &pressure_,
+                             &temperature_, &vibration_})
       if (*fact) service_.facts.push_back(**fact);
-    const auto missing = [&](const std::optional<ServiceFact>& fact, const char* what, const char* how) {
-      if (!fact) service_.facts.push_back({what, {}, {}, how, {}});
+    std::vector<std::string> unknown;
+    const auto look = [&](const std::optional<ServiceFact>& fact, const char* what, const char* how) {
+      if (!fact) unknown.push_back(fmt::format("{} (by {})", what, how));
     };
-    if (films_) missing(film_, "thinnest film", "not known: no `static` and no `cycle_branch` gives one at this speed");
-    if (films_)
-      missing(temperature_, "highest film temperature",
-              "not known: no `thd` and no film with heat gives one at this speed");
-    missing(vibration_, "largest vibration",
-            "not known: no `unbalance_response`, `cycle_branch`, `motion` or `run_up` gives one at this speed");
+    if (films_) look(film_, "thinnest film", "`static` or `cycle_branch`");
+    if (films_) look(temperature_, "highest film temperature", "`thd` or a film with heat");
+    look(vibration_, "largest vibration", "`unbalance_response`, `cycle_branch`, `motion` or `run_up`");
+    if (!unknown.empty())
+      service_.facts.push_back({"not known at this speed", {}, {}, fmt::format("{}", fmt::join(unknown, ", ")), {}});
     return std::move(service_);
   }
 
@@ -283,6 +284,8 @@ private:
     const io::Group* group = group_of(s);
     if (!group || !group->has_attribute("speed") || !is_service(group->real("speed"))) return;
     if (group->has_attribute("stability")) vote(group->text("stability"), s.name);
+    for (const auto& [bearing, load] : lifted_journals(s))
+      keep(lifted_, {"load that points upwards", bearing, load, "the shaft lifts the journal", s.name}, false);
     for (const auto& [name, q] : s.values) {
       if (!std::isfinite(q.value)) continue;
       if (const auto b = between(name, "bearing.", ".min_thickness")) {
@@ -454,8 +457,8 @@ private:
   io::Service service_;
   std::vector<std::string> verdicts_, voters_;
   std::pair<std::string, std::string> beside_;  // verdict and voter of listed speeds on either side: for want of others
-  std::optional<ServiceFact> threshold_, whirl_, decrement_, below_, above_, peak_below_, peak_above_, film_, pressure_,
-      temperature_, vibration_, beyond_films_;
+  std::optional<ServiceFact> threshold_, whirl_, decrement_, below_, above_, peak_below_, peak_above_, lifted_, film_,
+      pressure_, temperature_, vibration_, beyond_films_;
 };
 
 }  // namespace

@@ -258,6 +258,7 @@ StudyResult Static::run(Context& context) {
     summary.warnings.push_back(fmt::format("{} it is not known whether the equilibrium is stable: {}", where, reason));
   // Of all that the summary holds so far: what follows has no mesh.
   put_bars(context, system, options.speed.value, x);
+  warn_of_lifted(summary);
   const auto& rotor = system.train().rotor;
   summary.set("mass.total", rotor::total_mass(rotor), "kg");
   for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {
