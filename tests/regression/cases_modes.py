@@ -285,8 +285,10 @@ def textbook(h):
     s = h.run(h.source / "tests/cases/always_unstable.yaml", "skew", skew, launcher=[])["m"]
     for speed, low, high in ((400, -0.189, -0.053), (4000, -0.37, -0.17)):
         worst = [m["log_decrement"] for m in s["modes"] if m["speed"] == speed and m["stability"] == "unstable"]
-        h.true(f"unstable at {speed} rpm", len(worst) >= 3 and warned(s, f"{speed} rpm", "unstable"), str(worst))
+        h.true(f"unstable at {speed} rpm", len(worst) >= 3 and warned(s, str(speed), "unstable"), str(worst))
         h.close("    least log decrement", min(worst[:3]), low, 0.006)
+    told = [w for w in s["warnings"] if "unstable" in w]
+    h.true("one warning of all speeds", len(told) == 1 and told[0].startswith("at 400 and 4000 rpm the machine is unstable; at 4000 rpm: "), str(told))
     disc = h.source / "inputs/merot/disc_rotor.yaml"
     rest = "studies=[{modes: {name: m, speeds: [0 rad/s], count: 6}}]"
     for element in ("rayleigh", "timoshenko", "timoshenko_linear", "timoshenko_hermitian"):

@@ -12,6 +12,7 @@
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
+#include "study/linear/linear_brief.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -53,7 +54,23 @@ std::string ModeValues::words_of(const ShaftMode& mode, std::complex<double> lam
   return fmt::format("mode {}, {} at {:.4g} Hz", mode.id, whirl, lambda.imag() / (2 * std::numbers::pi));
 }
 
-void ModeValues::put_speed(io::StudySummary& summary, const Station& station) const {
+void ModeValues::put_speeds(io::StudySummary& summary, const std::vector<Station>& stations) const {
+  std::vector<std::string> speeds, last;  // at which the machine is unstable, and what grows at the last of them
+  for (const Station& station : stations) {
+    if (!station.reported) continue;
+    std::vector<std::string> growing = put_speed(summary, station);
+    if (growing.empty()) continue;
+    speeds.push_back(number_text(station.speed, unit_));
+    last = std::move(growing);
+  }
+  if (speeds.size() == 1)
+    warn_first(summary, fmt::format("at {} {} the machine is unstable: {}", speeds[0], unit_, joined(last)));
+  if (speeds.size() > 1)
+    warn_first(summary, fmt::format("at {} the machine is unstable; at {} {}: {}", in_words(speeds, most_named, unit_),
+                                    speeds.back(), unit_, joined(last)));
+}
+
+std::vector<std::string> ModeValues::put_speed(io::StudySummary& summary, const Station& station) const {
   const std::string head = "at." + number_text(station.speed, unit_) + ".";
   const auto put = [&](const std::string& name, const ShaftMode* m) {
     if (!m) return;
@@ -85,9 +102,7 @@ void ModeValues::put_speed(io::StudySummary& summary, const Station& station) co
   put("least_damped", least);
   summary.set(head + "unstable", static_cast<double>(growing.size()), "1");
   if (unresolved > 0) summary.set(head + "not_resolved", unresolved, "1");
-  if (!growing.empty())
-    warn_first(summary, fmt::format("at {} {} the machine is unstable: {}", number_text(station.speed, unit_), unit_,
-                                    joined(growing)));
+  return growing;
 }
 
 // The modes that grow for sure, counted over the speed as a branch counts its eigenvalues.

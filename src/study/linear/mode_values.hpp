@@ -27,11 +27,11 @@ public:
   ModeValues(std::string unit, const ModeTables& tables, const ModeBars& bars)
       : unit_(std::move(unit)), tables_(tables), bars_(bars) {}
 
-  /// Of a single speed, as "at.SPEED.": frequency [rad/s], log_decrement and damping_ratio of the first forward mode
+  /// Of single speeds, as "at.SPEED.": frequency [rad/s], log_decrement and damping_ratio of the first forward mode
   /// (`first_forward.`, that of lowest frequency) and of the least damped one (`least_damped.`), and how many modes
-  /// grow for sure (`unstable`), and how many decide on nothing (`not_resolved`, if any). A warning names those that
-  /// grow.
-  void put_speed(io::StudySummary& summary, const Station& station) const;
+  /// grow for sure (`unstable`), and how many decide on nothing (`not_resolved`, if any). One warning names the speeds
+  /// at which some grow, and these modes at the last of them.
+  void put_speeds(io::StudySummary& summary, const std::vector<Station>& stations) const;
   /// Of a range: "unstable.K." with from, to, mode and frequency, and a table; `errors` of the speeds of the crossings
   /// [rad/s]. Ranges of stability and "threshold" are those of a branch over these speeds. A warning names the ranges.
   /// Modes that nowhere grow for sure are left out.
@@ -41,6 +41,8 @@ public:
   void put_overdamped(io::Group& table, io::StudySummary& summary, const std::vector<Station>& stations) const;
 
 private:
+  /// What grows there, in words.
+  [[nodiscard]] std::vector<std::string> put_speed(io::StudySummary& summary, const Station& station) const;
   void put_stability(io::StudySummary& summary, const std::vector<Station>& stations,
                      const std::vector<UnstableRange>& sure, const std::vector<double>& errors) const;
   [[nodiscard]] std::string words_of(const ShaftMode& mode, std::complex<double> lambda) const;

@@ -318,7 +318,7 @@ StudyResult Modes::run(Context& context) {
   if (options.range)
     values.put_ranges(group, summary, stations, unstable_ranges(stations, crossings, points), errors);
   else
-    for (const double speed : speeds) values.put_speed(summary, station_at(speed));
+    values.put_speeds(summary, stations);
   values.put_overdamped(group.child("overdamped"), summary, stations);
   missed.warn(summary);
   MeshWaves waves;

@@ -1,6 +1,7 @@
 #include "study/linear/stable_speeds.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -76,7 +77,7 @@ void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const st
   if (stretches.empty()) return;
   const std::string counted = fmt::format("the {} speeds counted", stable.counted());
   std::string verdict;
-  std::vector<std::string> warned;
+  std::vector<std::string> unstable, open;
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     const StableSpeeds::Stretch& s = stretches[k];
     if (s.stability == "stable") continue;
@@ -86,12 +87,14 @@ void put_verdict(io::StudySummary& summary, const StableSpeeds& stable, const st
     if (k > 0 && s.stability == "unstable" && stretches[k - 1].stability == "stable")
       where += fmt::format(" (stable at {})", shown(stretches[k - 1].to));
     verdict += (verdict.empty() ? "" : ", ") + s.stability + " " + where;
-    warned.push_back(
-        s.stability == "unstable"
-            ? fmt::format("the equilibrium is unstable {}: {}", where, consequence)
-            : fmt::format("whether the equilibrium is stable {} is not known: eigenvalues may be missing", where));
+    (s.stability == "unstable" ? unstable : open).push_back(where);
   }
-  for (auto line = warned.rbegin(); line != warned.rend(); ++line) warn_first(summary, std::move(*line));
+  // Once each, wherever it is.
+  if (!open.empty())
+    warn_first(summary, fmt::format("whether the equilibrium is stable {} is not known: eigenvalues may be missing",
+                                    fmt::join(open, ", ")));
+  if (!unstable.empty())
+    warn_first(summary, fmt::format("the equilibrium is unstable {}: {}", fmt::join(unstable, ", "), consequence));
   summary.stability =
       stretches.size() == 1 ? stretches.front().stability + " at " + counted : verdict + ", by " + counted;
 }
