@@ -94,6 +94,9 @@ def signs(h):
         h.true(f"a disc with a {key} of {text}", len(lines) == 1 and words in lines[0] if words else not lines, told)
     told = say(h, "check", own, "--set", "rotor.discs.2={node: 17, mass: 1 g}")
     h.true("a disc that its shaft would not feel", "0.000317 of that of the shaft at its node over one diameter, 3.157 kg" in told, told)
+    # Moments about the left bearing: shaft 37.88 kg at 0.48 m, wheel 200 kg at 0 m, coupling 12 kg at 0.96 m; bearings at 0.24 and 0.84 m.
+    told = say(h, "check", own, "--set", "rotor.discs.1.mass=200 kg")
+    h.true("a journal that the shaft lifts", "bearing drive: its load is -494.9 N by the weight of the shaft, 2451 N" in told, told)
     here = "bearings.left.elevation"
     for text, after in (("by -20 um", "30 um"), ("by +20 um", "70 um"), ("x1.2", "60 um"), ("+20 %", "60 um"), ("-20 %", "40 um"),
                         ("=-20 um", "-20 um"), ("=+20 um", "20 um")):
