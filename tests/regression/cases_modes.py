@@ -280,6 +280,14 @@ def textbook(h):
         h.close(f"    K_{k} [N/m]", value(s["s"], f"bearing.a.K.{k}"), wanted, 1e-6 * abs(wanted))
     branch = s["t"]["bifurcations"][0]
     h.close("    threshold of modes and branch [rpm]", value(s["campbell"], "threshold"), branch["value"], 0.01)
+    # The table of the ends of the branch: by the same octic, and tan(attitude angle) = pi sqrt(1 - e^2)/(4 e).
+    ends = [row for t in s["t"]["brief"]["tables"] if t["caption"] == "At the ends of the branch" for row in t["rows"] if row[0] == "a"]
+    h.true("    ends of the branch, bearing a", [round(row[1]["value"], 6) for row in ends] == [200, 6000], str(ends))
+    for _, speed, x, y in ends:
+        e, _ = ocvirk(load, speed["value"] * RPM, 0.1, 0.1, 0.03, 1e-4)
+        phi = math.atan(math.pi * math.sqrt(1 - e * e) / (4 * e))
+        h.close(f"    x at {speed['text']} rpm [m]", x["value"], 1e-4 * e * math.sin(phi), 1e-10)
+        h.close(f"    y at {speed['text']} rpm [m]", y["value"], -1e-4 * e * math.cos(phi), 1e-10)
     # Coupled across with a skew part it is unstable at every speed above rest.
     skew = ["studies=[{modes: {name: m, speeds: [400 rpm, 4000 rpm], count: 6}}]"]
     s = h.run(h.source / "tests/cases/always_unstable.yaml", "skew", skew, launcher=[])["m"]
