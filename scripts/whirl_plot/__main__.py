@@ -30,7 +30,7 @@ PICTURES = {
     "thd": ["thd_maps.draw_maps", "thd_maps.draw_velocity", "thd_maps.draw_fluid", "thd_maps.draw_heat", "thd_cuts.draw_profiles", "thd_sections.draw_film", "thd_cuts.draw_radial",
             "thd_cuts.draw_axial", "thd_sections.draw_axial", "thd.draw_iterations", "thd.draw_meshes", "thd.draw_budget", "thd_compare.draw_effective", "thd_compare.draw_properties"],
     "locus": [], "mesh_convergence": [],
-    "sweep": ["sweep.draw_trends", "sweep.draw_branches", "sweep.draw_response", "sweep.draw_stability_factors", "sweep.draw_films", "sweep.draw_coefficients"],
+    "sweep": ["sweep.draw_trends", "sweep.draw_at_rest", "sweep.draw_branches", "sweep.draw_response", "sweep.draw_stability_factors", "sweep.draw_films", "sweep.draw_coefficients"],
 }
 OTHERS = ["columns.draw"]  # of kinds that are not in the list
 TOGETHER = ["machine.draw", "gas.draw_knudsen", "bifurcation.draw_together", "eccentricity.draw", "bearing_map.draw_together", "locus.draw_together", "run_up.draw_together"]

@@ -16,7 +16,7 @@ def sweep(study, what):
         return trends(study)
     if what in sweeps.COEFFICIENTS:
         return coefficients(study, what)
-    for make in (branches, responses):
+    for make in (branches, responses, at_rest):
         found = make(study, what)
         if found:
             return found
@@ -92,4 +92,18 @@ def responses(study, what):
         shared = {"x": ("speed", unit), "by": "x", "low": 0, "span": rounded(speed[[0, -1]]), "places": service_place(first, unit)}
         panels = [{**shared, "y": (f"{direction}, amplitude, 0-peak", length)} for direction in "xy"]
         return {"panels": panels, "lines": lines, "styles": styles.table, "choose": {"name": "at", "of": first.bearings(option + 1)}}
+    return None
+
+
+def at_rest(study, what):
+    for name, found in sweeps.at_rest(study).items():
+        if sweeps.plain(name) != what:
+            continue
+        panels, lines = [], []
+        for number, (words, unit, bearings) in enumerate(found):
+            for k, (bearing, place, value, bar) in enumerate(bearings):
+                colour = COLOURS[k % len(COLOURS)]
+                lines += [line(place, value, bearing, number, colour=colour, quiet=True, w=1.2), line(place, value, bearing, number, colour=colour, dots=True, bar=bar)]
+            panels.append({"x": parted(sweeps.axis_of(study)[0]), "y": (words, unit), "logx": bool(sweeps.wide(place))})
+        return {"panels": panels, "lines": lines}
     return None

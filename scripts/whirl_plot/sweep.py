@@ -6,6 +6,7 @@ import numpy as np
 from .bifurcation import Followed
 from .canvas import Line2D, plt
 from .curves import through
+from .response import Validity
 from .style import COLOURS, DASHED, GREY, INK, MARKS, branch_legend, grid_of, length_unit, save, speed_axis
 from .units import WORDS, scale_of
 
@@ -70,10 +71,11 @@ def each(study, kind, *needed):
             yield name, having
 
 
-def words_of(subject):
-    """A study by its name and what drives it: the grade of its unbalance is in one or the other."""
-    unbalance = subject.attribute("unbalance", "")
-    return subject.name + (f", unbalance {unbalance}" if unbalance else "")
+def words_of(rows):
+    """A study by its name and what drives it in all variants: the grade of its unbalance is in one or the other."""
+    subjects = [s for *_, s in rows]
+    unbalances = {s.attribute("unbalance", "") for s in subjects}
+    return subjects[0].name + (f", unbalance {unbalances.pop()}" if len(unbalances) == 1 and unbalances != {""} else "")
 
 
 def short(variant):
@@ -126,7 +128,7 @@ def draw_branches(study):
             note += "; all points of a cycle lie between its two curves" if len(columns) > 1 else ""
             files += save(figure, study, plain(name), note,
                           branch_legend([k for _, f in followed for k in f.kinds], legend(rows), [e for _, f in followed for e in f.ends]),
-                          of=words_of(first))
+                          of=words_of(rows))
     return files
 
 
@@ -145,13 +147,15 @@ def draw_response(study):
         pale = dict(linewidth=3.2, alpha=0.4, solid_capstyle="butt")
         handles = [Line2D([], [], color=c, label=f"{v}, linear", **pale) for v, c, _ in rows]
         own = {v: c for v, c, _ in rows}
-        members = [(v, own.get(v, INK), Followed(s)) for v, s in cycles.get(first.attribute("unbalance", ""), [])]
+        driven = dict.fromkeys(s.attribute("unbalance", "") for *_, s in rows)
+        members = [(v, own.get(v, INK), Followed(s)) for unbalance in driven for v, s in cycles.get(unbalance, [])]
         for row, direction in enumerate("xy"):
             for b, place in enumerate(places):
                 axis = axes[row, b]
                 for _, colour, s in rows:
                     speed = s.get("response/speed") * factor
-                    axis.plot(speed, s.get(f"bearings/{direction}_amplitude").reshape(len(speed), -1)[:, b] * scale, color=colour, **pale)
+                    answer = Validity(s, len(speed)).answer
+                    axis.plot(speed, np.where(answer, s.get(f"bearings/{direction}_amplitude").reshape(len(speed), -1)[:, b] * scale, np.nan), color=colour, **pale)
                 for _, colour, branch in members:
                     branch.draw(axis, (branch.column(f"{direction}_max") - branch.column(f"{direction}_min"))[:, b] / 2, colour, scale, linewidth=1.2)
                 if row == 0:
@@ -164,7 +168,7 @@ def draw_response(study):
         handles += [Line2D([], [], color=c, linewidth=1.2, label=f"{v}, nonlinear") for v, c, _ in members]
         if any(not branch.stable.all() for *_, branch in members):
             handles.append(Line2D([], [], color=GREY, linestyle=DASHED, linewidth=1.2, label="nonlinear, unstable"))
-        files += save(figure, study, plain(name), "journal relative to the bearing centre", handles, of=words_of(first))
+        files += save(figure, study, plain(name), "journal relative to the bearing centre", handles, of=words_of(rows))
     return files
 
 
@@ -293,7 +297,7 @@ def axis_of(study):
     at = study.get("table/" + name.replace("/", "_"))
     short = name.split(".")[-1] if name != "at" else study.name
     short = short.replace("_", " ")
-    if unit == "1" and any(str(v.get("changes", {}).get(name, "")).startswith("x") for v in study.summary.get("variants", [])):
+    if unit == "1" and any(re.search(r"\bx\d", v["name"]) for v in study.summary.get("variants", [])):
         short += ", factor on the deck's value"
     return None if at is None else (short + (f" [{WORDS.get(unit, unit)}]" if unit != "1" else ""), at)
 
@@ -389,3 +393,44 @@ def draw_trends(study):
         if wide([row[0] for course in courses for row in course]):
             axis.set_xscale("log")
     return save(figure, study, "trends", "with error bars; a line joins bifurcations of like stability whose whirl frequencies differ by less than 20 %")
+
+
+# What a study at rest says of each bearing: the end of the name of its column, and words.
+AT_REST = {"load": "load", "min_thickness": "thinnest film", "max_pressure": "largest pressure", "side_flow": "side flow", "power_loss": "power loss"}
+
+
+def at_rest(study):
+    """{study at rest: panels} of what changes by more than rounding; a panel is (words, unit, [(bearing, places, values, bars)])."""
+    where = axis_of(study)
+    if where is None or any(t["beside"] for t in study.summary["trends"]):
+        return {}
+    rows = [r for r in np.argsort(where[1], kind="stable") if np.isfinite(where[1][r])]
+    found = {}
+    for name in dict.fromkeys(n for *_, members in variants(study) for n, s in members.items() if s.kind == "static"):
+        for value, words in AT_REST.items():
+            form = re.compile(re.escape(name) + (r"\.load\.(.+)" if value == "load" else rf"\.bearing\.(.+)\.{value}"))
+            columns = [(form.fullmatch(c["name"]), c) for c in study.summary.get("columns", [])]
+            lines = [(match[1], c["unit"], *(np.array(c[key], float)[rows] for key in ("values", "uncertainties"))) for match, c in columns if match]
+            largest = max((np.nanmax(np.abs(v), initial=0) for *_, v, _ in lines), default=0)
+            if any(np.nanmax(np.abs(v - v[0]), initial=0) > 1e-6 * largest for *_, v, _ in lines):
+                factor, unit = scale_of(lines[0][1], largest)
+                found.setdefault(name, []).append((words, unit, [(bearing, where[1][rows], v * factor, np.nan_to_num(b) * factor) for bearing, _, v, b in lines]))
+    return found
+
+
+def draw_at_rest(study):
+    """What studies at rest say of each bearing over what the sweep changes, with their bars."""
+    files = []
+    for name, panels in at_rest(study).items():
+        figure, axes, _ = grid_of(len(panels), width=3.6, height=2.9, columns=2 if len(panels) == 4 else 3)
+        colours = {bearing: COLOURS[k % len(COLOURS)] for k, bearing in enumerate(dict.fromkeys(b for *_, lines in panels for b, *_ in lines))}
+        for axis, (words, unit, lines) in zip(axes, panels):
+            for bearing, place, value, bar in lines:
+                axis.errorbar(place, value, yerr=bar, marker="o", color=colours[bearing], **BAR)
+            axis.set_xlabel(axis_of(study)[0])
+            axis.set_ylabel(f"{words} [{unit}]")
+            if wide(place):
+                axis.set_xscale("log")
+        handles = [Line2D([], [], color=c, marker="o", markersize=4.5, label=bearing) for bearing, c in colours.items()]
+        files += save(figure, study, plain(name), "with error bars", handles, of=name)
+    return files

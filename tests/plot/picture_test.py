@@ -14,7 +14,7 @@ from PIL import Image
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import (bearing_map, bifurcation, campbell, columns, curves, film as machine_film, locus, motion, multipliers, orbits, orders, shapes, streamlines as flow, style, sweep,  # noqa: E402
+from whirl_plot import (bearing_map, bifurcation, campbell, columns, curves, film as machine_film, live_sweep, locus, motion, multipliers, orbits, orders, shapes, streamlines as flow, style, sweep,  # noqa: E402
                         thd_compare, thd_cuts, thd_film, thd_maps, thd_sections)
 from whirl_plot.canvas import plt as our_plt  # noqa: E402
 from whirl_plot.ticks import together  # noqa: E402
@@ -308,9 +308,10 @@ def branches_of_a_sweep(folder):
         for k, title in enumerate(("weak", "strong")):
             variant = group.create_group(f"variants/{title}")
             variant.attrs.update({"title": title, "order": k + 1})
-            for name in ("balanced", "pair, G2.5"):
+            for name in ("balanced", "pair, G2.5", "pair, G6.3"):
                 root.copy(root[f"studies/{name}"], variant, name)
             variant["pair, G2.5"].attrs["unbalance"] = "gen_pair_g63"
+            variant["pair, G6.3"].attrs["unbalance"] = title  # what the sweep varies is in no title
         root["studies/pair, G2.5"].attrs["unbalance"] = "gen_pair_g63"
 
     with results_with(folder, fill) as results:
@@ -324,6 +325,7 @@ def branches_of_a_sweep(folder):
             style.write = real
     where = "journal relative to the bearing centre, in clearances of each variant"
     assert texts == {"pedestals.balanced": ("pedestals: balanced", where),
+                     "pedestals.pair__G6.3": ("pedestals: pair, G6.3", where + "; all points of a cycle lie between its two curves"),
                      "pedestals.pair__G2.5": ("pedestals: pair, G2.5, unbalance gen_pair_g63",
                                               where + "; all points of a cycle lie between its two curves")}, texts
 
@@ -370,6 +372,39 @@ def coefficients(folder):
     # A polygon is 2 % too high in the middle of the first stretch.
     error = np.interp(700, *curve.T) / (16 * 600 / 700) - 1
     assert len(curve) > 100 and abs(error) < 0.01, error
+
+
+def at_rest(folder):
+    """What a sweep of journals at rest found, over the factor that was varied; what it left alone has no panel."""
+    factor, clearance = np.array([1.5, 0.5, 1.0]), 80e-6
+
+    def fill(root):
+        group = synthetic.study(root, "clearance", "sweep")
+        for order, x in enumerate(factor):
+            variant = group.create_group(f"variants/{order}")
+            variant.attrs.update({"title": f"clearance x{x:g}", "order": order + 1})
+            root.copy(root["studies/at service speed"], variant, "place")
+            variant["place"].attrs["title"] = "place"
+        synthetic.put(group.create_group("table"), **{"bearings.*.geometry.clearance": factor})
+
+    def column(name, unit, values):
+        return {"name": f"place.{name}", "unit": unit, "values": list(values), "uncertainties": [None, 0.0, 0.1 * abs(values[2])]}
+
+    with results_with(folder, fill) as results:
+        study = results["clearance"]
+        # Petroff: without load the film is as thick as the clearance, and the loss is inverse to it.
+        columns = [column(f"bearing.{b}.{name}", unit, size * values) for b, size in (("A.1", 1), ("B", 2)) for name, unit, values in
+                   (("min_thickness", "m", clearance * factor), ("power_loss", "W", 1500 / factor))]
+        study.summary = {"variants": [{"name": f"clearance x{x:g}", "changes": {}} for x in factor], "columns": columns + [column("load.B", "N", 50 + 0 * factor)],
+                         "trends": [{"quantity": "bearings.*.geometry.clearance", "unit": "1", "beside": ""}]}
+        axes = Figures().draw(sweep, sweep.draw_at_rest, study)["place"].axes
+        chart = live_sweep.sweep(study, "place")
+    assert [axis.get_ylabel() for axis in axes] == ["thinnest film [\u00b5m]", "power loss [kW]"], [axis.get_ylabel() for axis in axes]
+    assert all(axis.get_xlabel() == "clearance, factor on the deck's value" for axis in axes)
+    thin, loss = (lines_of(axis, style.COLOURS[1])[0] for axis in axes)
+    assert np.allclose(thin, [[0.5, 80], [1.0, 160], [1.5, 240]]) and np.allclose(loss, [[0.5, 6], [1.0, 3], [1.5, 2]]), (thin, loss)
+    dots = [line for line in chart["lines"] if line.get("dots")]
+    assert [(line["n"], line["y"], line.get("p", 0)) for line in dots[1:3]] == [("B", [80, 160, 240], 0), ("A.1", [3, 1.5, 1], 1)], dots
 
 
 def loci(folder):
@@ -873,7 +908,7 @@ refined()
 legends()
 border_of_stability()
 for check in (sag, mode_shapes, growth, campbell_lines, words, courses, colours, harmonics, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
-              coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines, without_meaning, tables):
+              coefficients, at_rest, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines, without_meaning, tables):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
     plt.close("all")
