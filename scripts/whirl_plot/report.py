@@ -272,7 +272,7 @@ def pictures_of(results):
     stems = {s: s.file("x").name.removesuffix("x") for s in results.studies}
     for study in results.studies:
         longer = [stem for stem in stems.values() if len(stem) > len(stems[study])]
-        mine = [p for p in every if p.name.startswith(stems[study]) and not any(p.name.startswith(stem) for stem in longer)]
+        mine = [p for p in every if p.stem.startswith(stems[study]) and not any(p.stem.startswith(stem) for stem in longer)]
         used.update(mine)
         found.append((study, mine))
     return found, [p for p in every if p not in used]

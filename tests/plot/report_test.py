@@ -160,7 +160,8 @@ def warnings(folder):
             style.save(style.plt.figure(), study, "response2")
         finally:
             style.write = kept
-    assert text.count(sentence.replace("um", "\u00b5m")) == 2 and "second &lt;b&gt;" in text, text.count(sentence)
+    sentence = sentence.replace("um", "\u00b5m")
+    assert text.count(sentence) == 2 and "second &lt;b&gt;" in text, text.count(sentence)
     assert lines == [f"Warning: {sentence}", "Warning: second <b>"], lines
     assert any(sentence in t.replace("\n", " ") for t in written[:first]), written
     assert not any(sentence[:20] in t for t in written[first:]) and any("2 warnings: see the first picture" in t for t in written[first:]), written
@@ -214,6 +215,13 @@ def page(folder):
     for words in ("All values of the variants", "<summary>Trends", "5025 \u00b1 12",
                   "loses stability at 5025"):
         assert words in text, words
+    # A picture of the run is none of a study of that name.
+    with results_with(folder, lambda *_: None, lambda root: root["studies/clearances"].attrs.update({"title": "run-up"})) as results:
+        for name in ("run-up", "run-up.trends"):
+            (folder / f"{name}.png").touch()
+        (folder / "manifest.txt").write_text("run-up.png\nrun-up.trends.png\n")
+        found, whole = report.pictures_of(results)
+    assert [p.stem for p in whole] == ["run-up"] and [p.stem for study, own in found for p in own] == ["run-up.trends"], (found, whole)
 
 
 for check in (branches, answers, service, sweep, bearing_map, options, warnings, foreign, page):
