@@ -5,6 +5,7 @@ from .canvas import plt
 from .style import GREY, ON_PRESSURE, PRESSURE, key, length_unit, save
 from .thd_film import Unwrapped, cavity_of
 from .thd_maps import angle_ticks, field, hatch_cavity
+from .units import scale_of
 
 
 def pads_of(study):
@@ -44,18 +45,19 @@ def draw(study):
         figure, axes = plt.subplots(len(pads), columns, figsize=(5.6 * columns, 2.9 * len(pads) + 1.0), squeeze=False)
         known = [study.get(f"{path}/thickness").ravel() for _, path in pads if study.has(f"{path}/thickness")]
         scale, unit = length_unit(np.concatenate(known or [np.zeros(1)]))
+        pascal, in_unit = scale_of("Pa", max(np.max(study.get(f"{path}/pressure")) for _, path in pads))
         ruptured = False
         for row, (name, path) in enumerate(pads):
-            pressure, fill = study.get(f"{path}/pressure") / 1e6, study.get(f"{path}/fill", None)
+            pressure, fill = study.get(f"{path}/pressure") * pascal, study.get(f"{path}/fill", None)
             pad = Unwrapped(study.get(f"{path}/theta"), study.get(f"{path}/z"), cavity_of(pressure.T, None if fill is None else fill.T))
             ruptured = ruptured or pad.cavity.any()
             theta, z = np.degrees(pad.theta), pad.z * 1e3
             left, right = axes[row][:2]
-            panel(figure, left, pad, pressure, PRESSURE, "pressure [MPa]", ON_PRESSURE)
+            panel(figure, left, pad, pressure, PRESSURE, f"pressure [{in_unit}]", ON_PRESSURE)
             i, j = np.unravel_index(np.argmax(pressure), pressure.shape)
             if pressure[i, j] > 0:
                 left.plot(theta[i], z[j], "+", color="black", markersize=8)
-            left.set_title(f"{name}: pressure, largest {pressure.max():.4g} MPa at {theta[i] % 360:.1f} deg")
+            left.set_title(f"{name}: pressure, largest {pressure.max():.4g} {in_unit} at {theta[i] % 360:.1f} deg")
             if warm:
                 celsius = study.get(f"{path}/temperature") - 273.15
                 panel(figure, axes[row][2], pad, celsius, "inferno", "mean temperature [\u00b0C]", "white", jumps=True)

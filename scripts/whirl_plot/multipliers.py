@@ -6,7 +6,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .bore import shade
 from .canvas import plt
-from .style import BAD, GREY, INK, MARKS, levels, parameter_label, save
+from .style import BAD, GREY, INK, MARKS, levels, parameter_label, save, span_of
 from .units import digits
 
 CLOSE = 0.12  # half the height of the close-up around one
@@ -90,7 +90,7 @@ def draw(study):
     colour = np.repeat(parameter[:, None], values.shape[1], axis=1)
     inside, outside = shown & (size <= 1), shown & (size > 1)
     # The brightest tenth of the scale would be yellow on white.
-    scale, norm = ListedColormap(plt.cm.viridis(np.linspace(0, 0.88, 200))), plt.Normalize(parameter.min(), parameter.max())
+    scale, norm = ListedColormap(plt.cm.viridis(np.linspace(0, 0.88, 200))), plt.Normalize(*span_of(parameter.min(), parameter.max()))
     limits = {"norm": norm, "cmap": scale}
     k, i, j = joined(values)
     ends = np.stack([values[k, i], values[k + 1, j]], axis=1)

@@ -5,7 +5,7 @@ from .bifurcation import Followed, legend
 from .bore import distance_in_words, draw_clearance, outline
 from .canvas import Line2D, plt
 from .curves import periodic
-from .style import DASHED, GREY, INK, ROTATION, Y, grid_of, mark, mark_end, parameter_label, save, ticks_at
+from .style import DASHED, GREY, INK, ROTATION, Y, grid_of, mark, mark_end, parameter_label, save, span_of, ticks_at
 from .units import person
 
 
@@ -170,7 +170,7 @@ def draw_locus(study):
     names = study.bearings(x.shape[1])
     figure, axes = places_in_rows(len(names))
     parameter = branch.parameter
-    norm = plt.Normalize(parameter.min(), parameter.max() if np.ptp(parameter) else parameter.min() + 1)
+    norm = plt.Normalize(*span_of(parameter.min(), parameter.max()))
     for b, (axis, name) in enumerate(zip(axes, names)):
         if not draw_clearance(axis, study, b, (x[:, b], y[:, b])):
             square(axis, x[:, b], y[:, b])

@@ -7,6 +7,8 @@ import zlib
 
 import numpy as np
 
+from whirl.answer import in_print
+
 from .canvas import Line2D, plt
 from .manifest import register
 from .ticks import settled, together
@@ -56,8 +58,8 @@ def speed_axis(unit):
 
 
 def span_of(low, high):
-    """Limits of an axis; a little apart where all is at one place."""
-    return (low, high) if high > low else (low - (abs(low) or 1) / 20, low + (abs(low) or 1) / 20)
+    """Limits of an axis; a little apart where all is at one place but for rounding."""
+    return (low, high) if high - low > 1e-5 * abs(low) else (low - (abs(low) or 1) / 20, low + (abs(low) or 1) / 20)
 
 
 def least_span(axis, reference, share=0.02):
@@ -115,7 +117,7 @@ def warning_lines(warnings, width, most=3):
     """The warnings of a study as lines of `width` characters, the last of which counts those that found no place."""
     lines, shown = [], 0
     for words in warnings:
-        more = textwrap.wrap(f"Warning: {words}", width)
+        more = textwrap.wrap(f"Warning: {in_print(words)}", width)
         if shown and len(lines) + len(more) > most:
             break
         lines += more
@@ -135,9 +137,12 @@ def warnings_below(study, what, width):
 
 
 def fewer_ticks(figure):
-    """Fewer numbers along x: those of five digits and more would run into each other below panels that stand side by side."""
+    """Fewer numbers along x: those of five digits and more would run into each other below panels that stand side by side. And no axis over
+    rounding: that of a branch which ends where it begins."""
     from matplotlib.ticker import AutoLocator, MaxNLocator
     for axis in figure.axes:
+        if axis.get_xscale() == "linear" and span_of(*axis.get_xlim()) != axis.get_xlim():
+            axis.set_xlim(*span_of(*axis.get_xlim()))
         spec = getattr(axis, "get_subplotspec", lambda: None)()
         if spec is not None and spec.get_gridspec().ncols > 2 and type(axis.xaxis.get_major_locator()) is AutoLocator and max(map(abs, axis.get_xlim())) >= 5e4:
             axis.xaxis.set_major_locator(MaxNLocator(3))
@@ -162,7 +167,7 @@ def save(figure, study, what, note="", handles=(), columns=6, of=""):
     title = textwrap.shorten(study.run_title, max(40, int(9.6 * figure.get_figwidth())), placeholder=" ...")
     figure.text(0.01, 1 - 0.2 / height, title, va="center", fontsize=11.5, fontweight="bold", color=INK)
     subject = f"{study.name}: {of}" if of else study.name
-    subtitle = subject if study.status in ("", "completed") else f"{subject} \u2014 {study.status}"
+    subtitle = subject if study.status in ("", "completed") else f"{subject} \u2014 {in_print(study.status)}"
     figure.text(0.01, 1 - 0.42 / height, textwrap.shorten(subtitle, max(40, int(14 * figure.get_figwidth())), placeholder=" ..."), va="center", fontsize=9.5, color=GREY)
     if handles:
         figure.legend(handles=list(handles), loc="lower left", ncol=columns, borderpad=0.2, borderaxespad=0, columnspacing=1.4,
@@ -348,7 +353,7 @@ def branch_legend(kinds, more=(), ends=(), solid="stable"):
                               markeredgecolor="white", label=f"{short}  {words}"))
     for reason in dict.fromkeys(ends):
         handles.append(Line2D([], [], color="white", marker="X", markeredgecolor=INK, markeredgewidth=0.9, linestyle="none",
-                              markersize=6, label=f"ends: {reason}"))
+                              markersize=6, label=f"ends: {in_print(reason)}"))
     return handles
 
 

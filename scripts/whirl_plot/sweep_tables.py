@@ -5,7 +5,7 @@ import re
 from .units import WORDS, digits, scale_of, with_bar
 
 SPEEDS = {"rpm": 30 / math.pi, "Hz": 0.5 / math.pi}
-SIGNS = {"+": "rises", "-": "falls", "mixed": "rises and falls", "undetermined": "undetermined: the bars contain zero", "no bar": "no bar"}
+SIGNS = {"+": "rises", "-": "falls", "0": "does not change", "mixed": "rises and falls", "undetermined": "undetermined: the bars contain zero", "no bar": "no bar"}
 
 
 def columns_of(study):
