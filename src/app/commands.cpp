@@ -33,12 +33,19 @@ std::string count(std::size_t n, const std::string& what, const std::string& plu
 // What `--set` did, a line per value.
 std::string changes_text(const std::vector<deck::Change>& changes) {
   constexpr std::size_t most = 20;
-  auto brief = [](const std::string& s) {
-    return s.empty() ? std::string("nothing") : s.size() > 60 ? fmt::format("{}...", s.substr(0, 57)) : s;
-  };
+  constexpr std::size_t longest = 60, beside = 20;
   std::string text;
-  for (std::size_t i = 0; i < std::min(most, changes.size()); ++i)
-    text += fmt::format("  set {}: {}, was {}\n", changes[i].path, brief(changes[i].after), brief(changes[i].before));
+  for (std::size_t i = 0; i < std::min(most, changes.size()); ++i) {
+    const std::string &after = changes[i].after, &before = changes[i].before;
+    // Long values from a little before their first difference on.
+    const auto apart = static_cast<std::size_t>(std::ranges::mismatch(after, before).in1 - after.begin());
+    auto brief = [&](const std::string& s) {
+      if (s.size() <= longest) return s.empty() ? std::string("nothing") : s;
+      const std::size_t from = apart + beside > longest ? apart - beside : 0;
+      return (from > 0 ? "..." : "") + s.substr(from, longest) + (from + longest < s.size() ? "..." : "");
+    };
+    text += paragraph(fmt::format("set {}: {}, was {}", changes[i].path, brief(after), brief(before)), 2);
+  }
   if (changes.size() > most) text += fmt::format("  and {} more values\n", changes.size() - most);
   return core::printable(text);
 }

@@ -62,8 +62,9 @@ std::string brief_text(const io::Brief& brief) {
 }  // namespace
 
 std::string headline_text(const io::StudySummary& s) {
-  std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
-                                 s.points == 1 ? "point" : "points", s.wall_seconds);
+  std::string text = paragraph(fmt::format("{}: {} ({}, {} {}, {:.3g} s)", s.name, s.status, s.kind, s.points,
+                                           s.points == 1 ? "point" : "points", s.wall_seconds),
+                               0);
   if (!s.layout.empty()) text += paragraph(s.layout, 2);
   if (!s.stability.empty() && !s.brief.tells_stability) text += paragraph(s.stability + in_words(s.ranges), 2);
   for (const std::string& w : s.warnings) text += paragraph("warning: " + w, 2);
