@@ -67,10 +67,13 @@ std::string in_short(std::string value) {
                                      {"first forward", "forward"},
                                      {"min thickness", "thinnest film"},
                                      {"eccentricity", "|e|/c"},
-                                     {"log decrement", "log dec."}})
+                                     {"log decrement", "log dec."},
+                                     {"hopf", "Hopf"},
+                                     {"neimark sacker", "Neimark-Sacker"}})
     if (const std::size_t at = value.find(words); at != std::string::npos)
       value.replace(at, std::string_view(words).size(), brief);
   if (value.starts_with("bearing ")) value.erase(0, std::string_view("bearing ").size());
+  if (value.starts_with("load ")) value = value.substr(std::string_view("load ").size()) + " load";
   return value + speed;
 }
 
@@ -142,9 +145,21 @@ private:
     // Of modes at one speed, which is that of every row.
     static const std::regex at_speed(R"(^at\.[0-9.e+-]+\.(?=first_forward\.))");
     c.head = in_short(speeds_of(c.study) > 1 ? c.value : std::regex_replace(c.value, at_speed, ""));
+    c.head = node_of(c) + c.head;
     c.name = studies_.size() > 1 ? c.study + ": " + c.head : c.head;
     choose_unit(c);
     return c;
+  }
+
+  // "node 67 ": the place of a peak of a response that has the same one in every row.
+  [[nodiscard]] std::string node_of(const Shown& c) const {
+    if (!c.value.starts_with("peak.")) return {};
+    const std::string name = c.study + "." + c.value.substr(0, c.value.rfind('.')) + ".node";
+    const auto node = std::ranges::find(s_.columns, name, &io::SweepColumn::name);
+    if (node == s_.columns.end()) return {};
+    std::set<double> places;
+    std::ranges::copy_if(node->values, std::inserter(places, places.end()), [](double x) { return std::isfinite(x); });
+    return places.size() == 1 ? fmt::format("node {:.0f} ", *places.begin()) : "";
   }
 
   // A bifurcation that is the threshold of every row stands once.

@@ -82,12 +82,15 @@ private:
   const std::vector<double>* counts_ = nullptr;
 };
 
-std::string sign_of(const io::Trend& t) {
+// The difference of two variants is rounding where it lies with its bar below this part of the largest value.
+constexpr double rounding = 1e-8;
+
+std::string sign_of(const io::Trend& t, double largest) {
   bool up = false, down = false, open = false, bare = false, same = false;
   for (std::size_t k = 0; k < t.difference.size(); ++k) {
     const double d = t.difference[k], bar = t.uncertainty[k];
     if (!std::isfinite(d)) continue;  // not comparable
-    if (d == 0 && bar == 0)           // counts
+    if (std::abs(d) + bar <= rounding * largest)
       same = true;
     else if (!std::isfinite(bar))
       bare = true;
@@ -194,7 +197,10 @@ std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows, const std::v
         before = r;
       }
       if (t.difference.empty()) continue;
-      t.sign = sign_of(t);
+      double largest = 0;
+      for (const auto& [at, r] : line.at)
+        if (std::isfinite(c.values[r])) largest = std::max(largest, std::abs(c.values[r]));
+      t.sign = sign_of(t, largest);
       all.push_back(std::move(t));
     }
   return all;
