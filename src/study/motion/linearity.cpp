@@ -7,6 +7,7 @@
 #include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
+#include "study/linear/linear_brief.hpp"
 #include "study/motion/linearity_run.hpp"
 #include "study/pieces.hpp"
 
@@ -50,6 +51,8 @@ io::Brief Linearity::brief(const StudyResult& result, std::span<const io::StudyS
   const std::vector<std::string> levels = v.between("level.", ".force");
   if (levels.empty()) return {};
   const auto percent = [&](const std::string& name) { return scaled(v[name], 100, "%"); };
+  // Numbers of one record: another seed changes the third digit.
+  const auto sample = [](const io::Quantity& q) { return to_digits(q, 3); };
   const double sure = 100 * options.probability;
   io::BriefTable table{"Levels of the random force",
                        {{"force, rms", "N"},
@@ -68,23 +71,24 @@ io::Brief Linearity::brief(const StudyResult& result, std::span<const io::StudyS
                                    "transfer function; deviation: root mean square of H1 less the linear one, over "
                                    "the largest gain; both off the resonance, as the least coherence. By chance alone "
                                    "the coherence reaches {}",
-                                   sure, io::reading(v["coherence.chance"]))};
+                                   sure, io::reading(sample(v["coherence.chance"])))};
   for (const std::string& k : levels) {
     const std::string head = "level." + k + ".";
-    table.rows.push_back({v[head + "force"], v[head + "peak"], v[head + "rms.x"], v[head + "rms.y"], v[head + "mean.x"],
-                          v[head + "mean.y"], percent(head + "within"), percent(head + "deviation"),
-                          v[head + "coherence.least"], v[head + "coherence.least_at"],
-                          v[head + "coherence.resonance"]});
+    std::vector<io::BriefCell>& row = table.rows.emplace_back();
+    row.emplace_back(v[head + "force"]);
+    for (const char* name : {"peak", "rms.x", "rms.y", "mean.x", "mean.y"}) row.emplace_back(sample(v[head + name]));
+    for (const char* name : {"within", "deviation"}) row.emplace_back(sample(percent(head + name)));
+    for (const char* name : {"coherence.least", "coherence.least_at", "coherence.resonance"})
+      row.emplace_back(sample(v[head + name]));
   }
   io::Brief brief{{}, {std::move(table)}};
   const auto at_level = [&](const std::string& k) {
     const std::string head = "level." + k + ".";
     return fmt::format(
         "With {} rms of force the largest displacement is {}: off the resonance {:.0f} % of the entries of H1 lie "
-        "within "
-        "their bounds of the linear transfer functions ({:.4g} % would if all were linear), and the "
+        "within their bounds of the linear transfer functions ({:.4g} % would if all were linear), and the "
         "coherence is {:.3f} at least, at the resonance {:.3f}.",
-        io::reading(v[head + "force"]), io::reading(v[head + "peak"]), percent(head + "within").value, sure,
+        io::reading(v[head + "force"]), io::reading(sample(v[head + "peak"])), percent(head + "within").value, sure,
         v[head + "coherence.least"].value, v[head + "coherence.resonance"].value);
   };
   brief.sentences.push_back(at_level(levels.front()));
