@@ -98,7 +98,7 @@ TEST(BranchBrief, JoinsStretchesOfOneVerdict) {
   EXPECT_EQ(all[0].to, 2.7);
   EXPECT_EQ(all[0].turns, std::vector<double>{3.2});
   const auto words = said(branch("undetermined", ranges));
-  EXPECT_EQ(words[0], "The equilibrium is undetermined from 2.4 to 2.7, turning at 3.2, then stable from 2.7 to 2.5.");
+  EXPECT_EQ(words[0], "The equilibrium is undetermined from 2.4 to 2.7 (turning at 3.2), then stable from 2.7 to 2.5.");
   const auto gap = said(branch("loses stability", {{500, 4471, "rpm", "stable"}, {4500, 6000, "rpm", "unstable"}}));
   EXPECT_EQ(gap[0], "The equilibrium loses stability between 4471 rpm and 4500 rpm.");
   const auto waves = said(branch("loses stability", {{400, 500, "rpm", "stable"},

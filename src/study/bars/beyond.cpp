@@ -34,12 +34,6 @@ std::string brief(double value, double bar, const std::string& unit) {
   return unit.empty() || unit == "1" ? text : text + " " + unit;
 }
 
-// "whirl grows", "an oscillation grows", "a second whirl grows".
-std::string with_article(const std::string& born) {
-  if (born == "whirl" || born == "half-frequency whirl" || born == "whirl of twice the period") return born;
-  return (born.front() == 'o' ? "an " : "a ") + born;
-}
-
 // "to large whirl", "to a large oscillation".
 std::string large(const std::string& born) {
   return with_article(born) == born ? "large " + born : "a large " + born;
@@ -88,14 +82,20 @@ std::string of_loss(const io::Bifurcation& b, const BranchKind& kind) {
 std::string of_gain(const io::Bifurcation& b, const BranchKind& kind, bool again) {
   const std::string where =
       fmt::format("stable{} above {}", again ? " again" : "", brief(b.value, b.uncertainty, b.unit));
-  if (kind.linear) return fmt::format("{}: {} ends there", where, b.born);
-  if (b.criticality == "supercritical") return fmt::format("{}: {} shrinks to nothing there", where, b.born);
+  const std::string born = with_article(b.born) == b.born ? b.born : "the " + b.born;
+  if (kind.linear) return fmt::format("{}: {} ends there", where, born);
+  if (b.criticality == "supercritical") return fmt::format("{}: {} shrinks to nothing there", where, born);
   if (b.criticality == "subcritical")
     return fmt::format("{}: just above it a disturbance can still trigger {}", where, large(b.born));
-  return fmt::format("{}: {} ends there, gradually or by a jump is undetermined", where, b.born);
+  return fmt::format("{}: {} ends there, gradually or by a jump is undetermined", where, born);
 }
 
 }  // namespace
+
+std::string with_article(const std::string& born) {
+  if (born == "whirl" || born == "half-frequency whirl" || born == "whirl of twice the period") return born;
+  return (born.starts_with('o') ? "an " : "a ") + born;
+}
 
 std::string parameter_word(std::string path) {
   while (!path.empty()) {

@@ -25,6 +25,9 @@ struct BranchKind {
 /// and branch points.
 [[nodiscard]] std::string born_at(io::BifurcationType type, const BranchKind& kind);
 
+/// "whirl" as it is; "an oscillation", "a second whirl".
+[[nodiscard]] std::string with_article(const std::string& born);
+
 /// Puts the numbers of unstable values into `b.more`: others_unstable, and unstable_below and unstable_above the
 /// parameter there, of a fold unstable_before and unstable_after it along the branch.
 void put_counts(io::Bifurcation& b, const BranchChange& change);

@@ -92,8 +92,8 @@ std::string span(const JoinedStretch& s, const std::string& unit) {
   std::string text = s.turns.empty()
                          ? from_to(s.from, s.to, unit)
                          : fmt::format("from {} to {}", io::reading({s.from, unit}), io::reading({s.to, unit}));
-  if (s.turns.size() == 1) text += ", turning at " + io::reading({s.turns.front(), unit});
-  if (s.turns.size() > 1) text += fmt::format(", turning {} times", s.turns.size());
+  if (s.turns.size() == 1) text += fmt::format(" (turning at {})", io::reading({s.turns.front(), unit}));
+  if (s.turns.size() > 1) text += fmt::format(" (turning {} times)", s.turns.size());
   return text;
 }
 
@@ -118,7 +118,7 @@ std::string loss(const io::StudySummary& s, const JoinedStretch& last, const Joi
   std::string words = fmt::format("{} at {}{} ({}{})", what, lowest ? "the threshold " : "", place_of(*b),
                                   is_border(*b) ? b->criticality + " " : "", short_words_of(b->type));
   if (const io::Quantity f = frequency_of(*b); !b->born.empty() && std::isfinite(f.value))
-    words += fmt::format(", where {} of {} begins", b->born, io::reading(f));
+    words += fmt::format(", where {} of {} begins", with_article(b->born), io::reading(f));
   if (const io::Quantity ratio = ratio_of(*b); std::isfinite(ratio.value))
     words += fmt::format(", {} of the speed", io::reading(ratio));
   if (const std::string more = meaning(*b); !more.empty()) words += ". " + as_sentence(more);
@@ -180,8 +180,8 @@ std::string threshold_of(const io::StudySummary& s, const std::string& said) {
                                  at == s.bifurcations.end() ? io::reading(threshold) : place_of(*at));
   if (at != s.bifurcations.end())
     if (const io::Quantity ratio = ratio_of(*at); std::isfinite(ratio.value))
-      text += fmt::format("; {} of {} begins there, {} of the speed", at->born, io::reading(frequency_of(*at)),
-                          io::reading(ratio));
+      text += fmt::format("; {} of {} begins there, {} of the speed", with_article(at->born),
+                          io::reading(frequency_of(*at)), io::reading(ratio));
   return text + ".";
 }
 

@@ -82,7 +82,8 @@ void put_largest(io::Brief& brief, bool doubtful, const io::Group& group, const 
   const std::string cycles = doubtful ? "the cycles that are not known to be unstable" : "the stable cycles";
   const std::string length = group.group("branch").dataset("x_max").unit;
   io::BriefTable table{
-      any ? "Largest vibration of " + cycles : "Largest vibration of the cycles, none of which is stable",
+      any ? "Largest vibration of " + cycles
+          : fmt::format("Largest vibration of the cycles, none of which is {}stable", doubtful ? "known to be " : ""),
       {{"place"}, {"x, 0-peak", length}, {word + " (x)", unit}, {"y, 0-peak", length}, {word + " (y)", unit}},
       {},
       "0-peak: half of the travel"};

@@ -196,14 +196,15 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
       const auto error = bar.find("uncertainty");
       return error == bar.end() ? number_text(speed, unit_) : io::reading(deck::from_si(speed, unit_), error->second);
     };
-    words.push_back(fmt::format("from {}{} to {}{} {}: {}",
-                                r.begins       ? ""
-                                : r.from_start ? "the start of the range, "
-                                               : "the first speed computed at which it grows, ",
+    const bool throughout = r.from_start && r.to_end;
+    words.push_back(fmt::format("{} {}{} to {}{} {}: {}", throughout ? "over the whole range," : "from",
+                                throughout || r.begins ? ""
+                                : r.from_start         ? "the start of the range, "
+                                                       : "the first speed computed at which it grows, ",
                                 place_of(r.from, r.begin_crossing),
-                                r.ends     ? ""
-                                : r.to_end ? "the end of the range, "
-                                           : "the last speed computed at which it grows, ",
+                                throughout || r.ends ? ""
+                                : r.to_end           ? "the end of the range, "
+                                                     : "the last speed computed at which it grows, ",
                                 place_of(r.to, r.end_crossing), unit_, words_of(r.fastest, r.lambda)));
     if (++shown > most_named) continue;
     const std::string head = fmt::format("unstable.{}.", shown);

@@ -74,8 +74,10 @@ std::vector<io::BriefTable> critical_tables(const std::vector<CriticalSpeed>& al
                           {},
                           "AF = pi/log decrement of the mode, at fixed speed"};
   if (const std::string note = margin_note(v); !note.empty()) critical.note += "; " + note;
-  io::BriefTable damped{
-      "Damped, not critical: amplification factor below 2.5 (API 684)", critical.columns, {}, "numbers as above"};
+  io::BriefTable damped{"Damped, not critical: amplification factor below 2.5 (API 684)",
+                        critical.columns,
+                        {},
+                        "no.: place among all crossings by speed, those of the table above as well"};
   for (const CriticalSpeed& c : all) {
     const bool apart = c.verdict.starts_with("damped"), undamped = c.stability == "undamped";
     std::vector<io::BriefCell> row{c.number, c.speed};

@@ -52,8 +52,10 @@ struct Trend {
     constexpr double linear = 0.2;
     if (!std::isfinite(uncertainty)) return "too few points to tell a drift";
     const double ratio = std::exp(change);
-    return (uncertainty < linear ? fmt::format("moves {:.4g} +- {:.1g} times", ratio, ratio * uncertainty)
-                                 : fmt::format("moves about {:.2g} times", ratio)) +
+    const double bar = std::max(ratio * uncertainty, 1e-9);
+    const int places = std::max(0, 1 - static_cast<int>(std::floor(std::log10(bar))));
+    return (uncertainty < linear ? fmt::format("it moves {:.{}f} +- {:.{}f} times", ratio, places, bar, places)
+                                 : fmt::format("it moves about {:.2g} times", ratio)) +
            " as far at the end of the record as at its beginning";
   }
 };
