@@ -8,11 +8,11 @@ endif()
 
 add_library(whirl_flags INTERFACE)
 target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast -Werror)
-# A local name may hide one of another file that is compiled with it.
-if(WHIRL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(whirl_flags INTERFACE -Wshadow=local)
-else()
+# In a batch a local name may hide one of another file. GCC can tell the two apart, Clang cannot.
+if(NOT WHIRL_UNITY)
   target_compile_options(whirl_flags INTERFACE -Wshadow)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(whirl_flags INTERFACE -Wshadow=local)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 reports its own AVX-512 intrinsics as uninitialised.
