@@ -432,5 +432,6 @@ def draw_at_rest(study):
             if wide(place):
                 axis.set_xscale("log")
         handles = [Line2D([], [], color=c, marker="o", markersize=4.5, label=bearing) for bearing, c in colours.items()]
-        files += save(figure, study, plain(name), "with error bars", handles, of=name)
+        known = any((bar > 0).any() for *_, lines in panels for *_, bar in lines)
+        files += save(figure, study, plain(name), "with error bars" if known else "no error bars are known", handles, of=name)
     return files
