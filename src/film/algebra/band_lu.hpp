@@ -11,9 +11,9 @@ namespace whirl::film {
 
 /// D A U = L R of matrices of one pattern, U the units of the unknowns, D such that the largest entry of each row is
 /// one: films have several units. Rows are not exchanged; in a film that costs some digits where it stands still. How
-/// many is tried on a solution that is known: where fewer than seven are left rows are exchanged (core::PivotedBand). Cost for
-/// n states of bandwidth w on either side: 2 n w^2 operations to factorise, 4 n w to solve, 2 n w numbers to hold;
-/// twice as much with exchanges.
+/// many is tried on a solution that is known: where fewer than seven are left rows are exchanged (core::PivotedBand).
+/// Cost for n states of bandwidth w on either side: 2 n w^2 operations to factorise, 4 n w to solve, 2 n w numbers to
+/// hold; twice as much with exchanges.
 class BandLu {
 public:
   using Sparse = Eigen::SparseMatrix<double>;
