@@ -203,8 +203,8 @@ void warn_of_lifted(io::StudySummary& summary) {
   for (const auto& [bearing, load] : lifted_journals(summary))
     sentences.add(
         bearing, load.value,
-        "load in N, which points upwards: the shaft lifts the journal into the upper half of its bearing. Are "
-        "the masses, the nodes and 'elevation' right?");
+        "load in N, which points upwards: the shaft lifts the journal into the upper half of its bearing. An overhung "
+        "mass does that; where there is none, look at masses, nodes and 'elevation'");
   sentences.put(summary);
 }
 
@@ -232,11 +232,10 @@ std::vector<std::string> lifted_by_weight(const system::Machine& machine) {
   for (std::size_t b = 0; b < 2; ++b) {
     const double load = (b == 0 ? 1 : -1) * (weight * place(1 - b) - moment) / span;
     if (load < -1e-6 * weight)
-      lines.push_back(
-          fmt::format("bearing {}: its load is {:.4g} N by the weight of the shaft, {:.4g} N, and points upwards: the "
-                      "shaft lifts the "
-                      "journal. Are the masses and nodes right?",
-                      machine.bearings[b].name, load, weight));
+      lines.push_back(fmt::format(
+          "bearing {}: its load is {:.4g} N by the weight of the shaft, {:.4g} N, and points upwards: the "
+          "shaft lifts the journal. An overhung mass does that; where there is none, look at masses and nodes",
+          machine.bearings[b].name, load, weight));
   }
   return lines;
 }
