@@ -288,6 +288,13 @@ def smooth(at, values):
     return through(at, values) if np.all(np.diff(at) > 0) else (at, values)
 
 
+def is_factor(study, name):
+    """Whether a number without a unit is a factor: the variants say so, or what they change has a unit."""
+    variants = study.summary.get("variants", [])
+    changed = [str(value) for v in variants for path, value in v.get("changes", {}).items() if path.split(".")[-1] == name.split(".")[-1]]
+    return any(re.search(r"\bx\d", v["name"]) for v in variants) or any(re.search(r"\d [A-Za-z]", value) for value in changed)
+
+
 def axis_of(study):
     """Label and place of every row on the first quantity that changes as a number."""
     trends = study.summary.get("trends", [])
@@ -297,7 +304,7 @@ def axis_of(study):
     at = study.get("table/" + name.replace("/", "_"))
     short = name.split(".")[-1] if name != "at" else study.name
     short = short.replace("_", " ")
-    if unit == "1" and any(re.search(r"\bx\d", v["name"]) for v in study.summary.get("variants", [])):
+    if unit == "1" and name != "at" and is_factor(study, name):
         short += ", factor on the deck's value"
     return None if at is None else (short + (f" [{WORDS.get(unit, unit)}]" if unit != "1" else ""), at)
 
