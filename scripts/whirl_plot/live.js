@@ -39,7 +39,7 @@
         select.onchange = () => { this.option = +select.value; this.whole(); this.refresh(); };
       } else if (choose && choose.of.length) make('span', bar, {className: 'style'}, choose.of[0]);
       const names = new Map();
-      // First the buttons of curves, then those of marks. A curve with a solid stretch has a button with a solid line.
+      // Buttons of curves come before buttons of marks. The button of a curve shows a solid line if a stretch of the curve is solid.
       for (const marked of [false, true]) {
         for (const line of this.data.lines) if (line.n && !(line.m || line.dots) === !marked && (!names.has(line.n) || names.get(line.n).d && !line.d)) names.set(line.n, line);
       }

@@ -137,8 +137,8 @@ def warnings_below(study, what, width):
 
 
 def fewer_ticks(figure):
-    """Fewer numbers along x: those of five digits and more would run into each other below panels that stand side by side. And no axis over
-    rounding: that of a branch which ends where it begins."""
+    """Fewer numbers along x: below panels side by side, numbers of five digits run into each other. An axis over rounding, of a branch
+    that ends where it begins, is widened."""
     from matplotlib.ticker import AutoLocator, MaxNLocator
     for axis in figure.axes:
         if axis.get_xscale() == "linear" and span_of(*axis.get_xlim()) != axis.get_xlim():

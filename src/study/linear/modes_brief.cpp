@@ -77,7 +77,7 @@ std::vector<io::BriefTable> critical_tables(const std::vector<CriticalSpeed>& al
   io::BriefTable damped{"Damped, not critical: amplification factor below 2.5 (API 684)",
                         critical.columns,
                         {},
-                        "no.: place among all crossings by speed, those of the table above as well"};
+                        "no.: counted by speed over both tables"};
   for (const CriticalSpeed& c : all) {
     const bool apart = c.verdict.starts_with("damped"), undamped = c.stability == "undamped";
     std::vector<io::BriefCell> row{c.number, c.speed};
