@@ -34,7 +34,8 @@ class Quantity(typing.NamedTuple):
 
 
 class Orbit(typing.NamedTuple):
-    """One cycle of a branch: parameter in `unit`, names of the places, x and y [time][place] at equal steps over a period."""
+    """One cycle of a branch: parameter in `unit`, names of the places, x and y [time][place] at equal steps over a period; stable: None
+    where that is not known."""
 
     parameter: float
     unit: str
@@ -190,8 +191,8 @@ class Study:
         parameter, point = np.atleast_1d(self.get("orbits/parameter")), self.get("orbits/point")
         stable = self.get("branch/stable")
         names, unit = self.bearings(x.shape[2]), self.attribute("parameter_unit", "")
-        known = point is not None and stable is not None
-        return [Orbit(float(p), unit, names, x[k], y[k], bool(stable[point[k]] > 0.5) if known else None,
+        told = np.full(len(parameter), np.nan) if point is None or stable is None else stable[point]  # not a number: unknown
+        return [Orbit(float(p), unit, names, x[k], y[k], None if np.isnan(told[k]) else bool(told[k] > 0.5),
                       int(point[k]) if point is not None else None) for k, p in enumerate(parameter)]
 
     @property

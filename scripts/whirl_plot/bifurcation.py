@@ -11,6 +11,15 @@ from .style import BAD, DASHED, GREY, INK, X, Y, branch_legend, grid_of, least_s
 RANGE_ENDS = ("completed", "", "end of the range")
 
 
+UNSTABLE_OR_UNKNOWN = "unstable, or not known"
+
+
+def words_of_dashes(unstable):
+    """What a dashed line is: where multipliers were not found, their number is -1."""
+    unknown, some = (unstable < 0).any(), (unstable > 0).any()
+    return UNSTABLE_OR_UNKNOWN if unknown and some else "stability not known" if unknown else "unstable"
+
+
 class Followed:
     """The branch of a study: its curves, where its bifurcations lie on it, and why it ends.
 
@@ -29,6 +38,7 @@ class Followed:
         undamped = np.zeros(len(self.parameter)) if undamped is None else np.asarray(undamped)
         self.solid = {(True,): "undamped", (False,): "stable"}.get(tuple(np.unique(undamped[self.stable] > 0)), "stable or undamped")
         unstable, step = unstable if unstable is not None else (~self.stable).astype(int), study.get("branch/step")
+        self.dashed = words_of_dashes(unstable)
         filled = 0 < float(study.attribute("picture_tolerance", 0)) <= 0.02
         self.bare = self.curve = Branch(self.parameter, step, unstable, filled)
         self.bare_parameter, self.bare_stable = self.parameter, self.stable
@@ -148,8 +158,10 @@ def without_twins(branches):
 
 def legend(branches, more=()):
     kinds = list(dict.fromkeys(b.solid for b in branches if b.stable.any()))
+    dashes = {b.dashed for b in branches if not b.stable.all()}
     return branch_legend([k for b in branches for k in b.kinds], more, [e for b in branches for e in b.ends],
-                         kinds[0] if len(kinds) == 1 else "stable or undamped" if kinds else "stable")
+                         kinds[0] if len(kinds) == 1 else "stable or undamped" if kinds else "stable",
+                         dashes.pop() if len(dashes) == 1 else UNSTABLE_OR_UNKNOWN if dashes else "unstable")
 
 
 def distinct(*tables):

@@ -1,7 +1,7 @@
 """Charts of branches over a parameter, with the orbit of the point under the cursor beside them, and of the orbits themselves."""
 import numpy as np
 
-from .bifurcation import Followed, damped, distinct, without_twins
+from .bifurcation import Followed, damped, distinct, without_twins, words_of_dashes
 from .bore import outline
 from .live import line, rounded, service_place
 from .orbits import picked, shades_of, stability
@@ -92,7 +92,7 @@ def orbit_panel(unit):
 
 
 def chart(study, lines, panels, names, **more):
-    styles = [{"t": "stable"}, {"d": 1, "t": "unstable"}]
+    styles = [{"t": "stable"}, {"d": 1, "t": words_of_dashes(study.get("branch/unstable_count", np.zeros(1)))}]
     both = any(c.get("d") == 1 for c in lines)
     return {"panels": panels, "lines": lines, "styles": styles, "keys": styles if both else [], "choose": {"name": "at", "of": names}, **more}
 

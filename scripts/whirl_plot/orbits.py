@@ -52,7 +52,7 @@ def stability(study, orbits):
         return [None] * len(orbits)
     # Results without the number of the point: where a parameter occurs once.
     rows = [np.nonzero(parameter == o.parameter)[0] for o in orbits]
-    return [bool(stable[r[0]] > 0.5) if len(r) == 1 else None for r in rows]
+    return [bool(stable[r[0]] > 0.5) if len(r) == 1 and np.isfinite(stable[r[0]]) else None for r in rows]
 
 
 def along_branch(study, orbits):

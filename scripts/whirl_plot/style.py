@@ -343,10 +343,10 @@ def mark_end(axis, x, y, size=6):
               linestyle="none", zorder=7)
 
 
-def branch_legend(kinds, more=(), ends=(), solid="stable"):
+def branch_legend(kinds, more=(), ends=(), solid="stable", dashed="unstable"):
     """Handles for stable, unstable, the kinds of bifurcation that occur, and the ends of branches (name, reason)."""
     handles = list(more) + [Line2D([], [], color=GREY, label=solid),
-                            Line2D([], [], color=GREY, linestyle=DASHED, linewidth=1.3, label="unstable")]
+                            Line2D([], [], color=GREY, linestyle=DASHED, linewidth=1.3, label=dashed)]
     for kind in dict.fromkeys(k for k in kinds if k in MARKS):
         short, marker, words = MARKS[kind]
         handles.append(Line2D([], [], color=INK, marker=marker, linestyle="none", markersize=6,

@@ -3,6 +3,7 @@
 
 cases_verdicts.py PROGRAM SOURCE [LAUNCHER WORDS...]
 """
+import math
 import sys
 
 from harness import Harness, value
@@ -89,6 +90,21 @@ def several(h):
     h.true("880 rad/s has one", not any("passes 880" in w for w in s.get("warnings", [])))
 
 
+def many_bearings(h):
+    """Twenty pairs of multipliers of nearly one modulus. Under small unbalance they are those of the modes of the equilibrium."""
+    deck = h.source / "tests/cases/uniform_shaft.yaml"
+    s = h.run(deck, "uniform", bars=False)
+    cycle, period = s["forced"], value(s["forced"], "at.5800.period")
+    largest = max(math.exp(m["real"] * period) for m in s["modes"]["modes"])
+    h.close("largest multiplier of a shaft on twenty bearings", value(cycle, "at.5800.multiplier.modulus"), largest, 2e-5)
+    h.true("stable", cycle["stability"] == "stable throughout" and not cycle.get("suspected"), str(cycle["stability"]))
+    # Where the search may not restart it does not converge: the cycles are there all the same.
+    lost = h.run(deck, "unknown", [], ["--", "-monodromy_eps_max_it", "1"], bars=False)["forced"]
+    h.true("cycles without multipliers are a result", lost["status"] == "completed" and lost["points"] == 2, str(lost["status"]))
+    h.true("whose stability is not known", lost["stability"] != "stable throughout" and "undetermined" in stretches(lost), str(lost["ranges"]))
+    h.true("with the reason", any("did not converge" in x["reason"] for x in lost["suspected"]), str(lost.get("suspected")))
+
+
 if __name__ == "__main__":
     program, source, *launcher = sys.argv[1:]
     harness = Harness(program, source, launcher)
@@ -102,4 +118,5 @@ if __name__ == "__main__":
     duffing(harness)
     bearing_map(harness)
     several(harness)
+    many_bearings(harness)
     harness.finish()

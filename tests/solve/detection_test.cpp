@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "branch_support.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
@@ -46,14 +47,21 @@ struct Found : test::Recorded {
   std::vector<solve::Suspicion> suspected;
 };
 
+/// `lost` says where the search for multipliers does not converge.
 template <class System>
-Found follow(System formula, double from, double to, double step) {
+Found follow(
+    System formula, double from, double to, double step,
+    const std::function<bool(double)>& lost = [](double) { return false; }) {
   test::SmallSystem s(PETSC_COMM_SELF, 2, from, speed, formula);
   solve::CycleProblem problem(MPI_COMM_WORLD, s, degree_four(), solve::uniform_mesh(12));
   Found found;
   auto callbacks = test::recording(problem, found);
   callbacks.cycles = true;
-  callbacks.stability = [&](Vec) { return test::multipliers(problem); };
+  callbacks.stability = [&](Vec u) {
+    solve::Stability out;
+    out.unknown = lost(solve::last_entry(problem.comm(), u));
+    return out.unknown ? out : test::multipliers(problem);
+  };
   callbacks.refine = [&](const solve::LocatedEvent& e, Vec u, Vec t) {
     return solve::refine(problem, e, u, t, test::sharp());
   };
@@ -84,6 +92,22 @@ TEST(Detection, AValueThatComesAndGoes) {
   EXPECT_NEAR(flips[0], 0, 1e-9);
   EXPECT_NEAR(flips[1], 0.1, 1e-9);
   EXPECT_TRUE(r.suspected.empty());
+}
+
+// Two flips at 0 and 0.8, the first one where the search for multipliers does not converge.
+TEST(Detection, GoesOnWhereStabilityIsUnknown) {
+  const auto r = follow(
+      half_turning([](auto a, auto b, auto p) { return std::pair(decltype(a)((p * (0.8 - p)) * a), decltype(a)(-b)); }),
+      -1, 1, 0.1, [](double p) { return p > -0.25 && p < 0.25; });
+  EXPECT_TRUE(r.end.completed);
+  const auto flips = places(r, Event::flip);
+  ASSERT_EQ(flips.size(), 1U);
+  EXPECT_NEAR(flips[0], 0.8, 1e-9);
+  ASSERT_FALSE(r.suspected.empty());
+  EXPECT_LT(r.suspected.front().from, -0.25);
+  EXPECT_GT(r.suspected.back().to, 0.25);
+  for (std::size_t k = 0; k + 1 < r.suspected.size(); ++k) EXPECT_EQ(r.suspected[k].to, r.suspected[k + 1].from);
+  for (const auto& p : r.points) EXPECT_EQ(p.stability.unknown, p.parameter > -0.25 && p.parameter < 0.25);
 }
 
 // z' = (r(p) + i) z about x = 0, r > 0 in a window of a step only, which no point sees: a look inside finds it.

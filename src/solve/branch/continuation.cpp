@@ -101,19 +101,20 @@ bool Follower::correct_on_new_mesh(State& here, NewtonResult& result) {
   if (!result.converged) return false;
   const auto facts = [](const State& s) { return std::pair(s.point.stability.unstable(), s.point.slope > 0); };
   const auto old = facts(here);
+  const bool known = !here.point.stability.unknown;
   inspect(here, along.get());
-  if (!questions_.events || facts(here) == old) return true;
+  if (!questions_.events || !known || here.point.stability.unknown || facts(here) == old) return true;
   const double step = here.point.step;
   for (double ds = rounded(step / 256); ds <= step; ds *= 4) {
     State other;
     NewtonResult tried;
-    if (advance(here, -ds, other, tried) && facts(other) == old) {
+    if (look_ahead(here, -ds, other, tried) && facts(other) == old) {
       State end = copy(here);
       end.point.step = arclength(problem_, other, here.u.get());
       events(nullptr, nullptr, other, end);
       return true;
     }
-    if (advance(here, ds, other, tried) && facts(other) == old) {
+    if (look_ahead(here, ds, other, tried) && facts(other) == old) {
       here = std::move(other);
       here.point.step = step + ds;
       return true;
@@ -240,7 +241,9 @@ void Follower::step() {
   next.point.index = here_.point.index + 1;
   // With stability facts missing at this point alone (a branch that starts at a bifurcation) there is nothing to
   // compare with.
-  const bool comparable = !questions_.stability || !here_.point.stability.values.empty();
+  const bool unknown = here_.point.stability.unknown || next.point.stability.unknown,
+             comparable = !unknown && (!questions_.stability || !here_.point.stability.values.empty());
+  if (questions_.events && unknown) suspect(here_, next, "the search for eigenvalues or multipliers did not converge");
   if (questions_.events && comparable)
     events(memory_.earlier ? &*memory_.earlier : nullptr, memory_.before.u ? &memory_.before : nullptr, here_, next);
   const double step = comparable ? fill(here_, next) : next.point.step;

@@ -60,7 +60,7 @@ Extremum extremum(double h1, double f1, double f0, double h2, double f2) {
 
 bool Follower::split(const State& a, const State& b, State& middle, State& rest) {
   NewtonResult result;
-  if (!advance(a, rounded(b.point.step / 2), middle, result)) return false;
+  if (!look_ahead(a, rounded(b.point.step / 2), middle, result)) return false;
   rest = copy(b);
   rest.point.step = distance(middle, b.u.get());
   return true;
@@ -104,7 +104,7 @@ bool Follower::search(const State& a, const State& b, const Test& test, double t
     State trial;
     NewtonResult result;
     // Where a bend is too sharp for a step, as beside a row of a table, the parameter still leads there.
-    if (!advance(a, s, trial, result)) {
+    if (!look_ahead(a, s, trial, result)) {
       if (!between(a, b, a.point.parameter + s / b.point.step * dp, trial)) return false;
       s = trial.point.step;
     }
@@ -333,7 +333,7 @@ void Follower::visits(const State& before, const State& a, const State& b, bool 
       if (!peak.inside || (seen && peak.s < 0) || !(rounded(peak.value) > rounded(nearest / 2))) break;
       State here;
       NewtonResult result;
-      if (attempt == 4 || !advance(a, rounded(peak.s), here, result)) {
+      if (attempt == 4 || !look_ahead(a, rounded(peak.s), here, result)) {
         suspect(before, b, "a value comes to the border of stability and may cross it and return");
         break;
       }
@@ -374,7 +374,7 @@ bool Follower::kinks(const BranchPoint& first, const State& a, const State& b, c
     if (!(s > 0 && s < h) || !(rounded(peak) > rounded(std::max(f0, f1) / 2))) continue;
     State here;
     NewtonResult result;
-    if (!advance(a, rounded(s), here, result)) {
+    if (!look_ahead(a, rounded(s), here, result)) {
       suspect(a, b, "values pass each other near the border of stability where no point could be computed");
       continue;
     }

@@ -141,7 +141,7 @@ bool Follower::middle(const State& a, const State& b, State& to) {
   } catch (const core::NotConverged&) {  // a singular matrix
     return false;
   }
-  return true;
+  return !to.point.stability.unknown;
 }
 
 void Follower::halve(const Gap& s, const Curves& first, const Curves& last, int depth, std::vector<State>& inner) {

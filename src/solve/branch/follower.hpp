@@ -60,6 +60,10 @@ private:
   }
   // The point at arclength ds from `from`; of natural continuation, at the parameter ds further on.
   bool advance(const State& from, double ds, State& to, NewtonResult& result);
+  // The same, at a place whose stability is wanted.
+  bool look_ahead(const State& from, double ds, State& to, NewtonResult& result) {
+    return advance(from, ds, to, result) && !to.point.stability.unknown;
+  }
   // A branch that leaves a bifurcation at right angles to the parameter begins with a step of arclength.
   [[nodiscard]] bool natural_from(const State& from) const {
     return kind_ == Continuation::natural && from.point.slope != 0;

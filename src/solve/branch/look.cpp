@@ -24,7 +24,8 @@ ReplayLog::Answer pack(const ReplayLog& replay_log, const State& s, const std::v
                           s.point.step,
                           static_cast<double>(s.point.newton_iterations),
                           static_cast<double>(all.missed),
-                          static_cast<double>(all.mesh_waves.size())};
+                          static_cast<double>(all.mesh_waves.size()),
+                          all.unknown ? 1.0 : 0.0};
   for (const auto* list : {&all.values, &all.mesh_waves})
     for (const auto& v : *list) out.insert(out.end(), {v.real(), v.imag()});
   for (const auto& list : {all.distance, s.point.monitors, warm}) out.insert(out.end(), list.begin(), list.end());
@@ -37,7 +38,7 @@ void unpack(const ReplayLog::Answer& answer, State& s, std::vector<double>& warm
     const double* begin = std::exchange(at, at + static_cast<std::ptrdiff_t>(n));
     return std::vector<double>(begin, at);
   };
-  const std::vector<double> counts = next(9);
+  const std::vector<double> counts = next(10);
   s.point.stability = {};
   const auto complex = [&next](double n) {
     std::vector<std::complex<double>> out;
@@ -54,6 +55,7 @@ void unpack(const ReplayLog::Answer& answer, State& s, std::vector<double>& warm
   s.point.step = counts[5];
   s.point.newton_iterations = static_cast<int>(counts[6]);
   s.point.stability.missed = static_cast<int>(counts[7]);
+  s.point.stability.unknown = counts[9] > 0;
   s.tangent = core::duplicate(s.u.get());
   ReplayLog::give(answer.vectors.at(0), s.tangent.get());
 }
@@ -136,7 +138,7 @@ bool Follower::between(const State& a, const State& b, double parameter, State& 
   } catch (const core::NotConverged&) {  // a singular matrix
     return false;
   }
-  return true;
+  return !to.point.stability.unknown;
 }
 
 void Follower::crossings_by_looks(const State& a, const State& b) {

@@ -87,6 +87,7 @@ DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec
     context.gate.rethrow(EPSSolve(eps.get()));
     PetscInt converged = 0;
     check(EPSGetConverged(eps.get(), &converged));
+    if (converged < wanted && !context.below && options.persistent && wanted < most) continue;
     if (converged < wanted && !context.below)
       core::agree(comm, [&] {
         throw core::NotConverged(fmt::format("only {} of {} multipliers converged", converged, wanted));
@@ -127,6 +128,7 @@ DominantSubspace dominant_multipliers(const std::function<void(Vec)>& multiply, 
     if (radius >= above_a_band) throw;
   }
   options.radius = radius = above_a_band;
+  options.persistent = true;
   return dominant_subspace(multiply, start, options);
 }
 

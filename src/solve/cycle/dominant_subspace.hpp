@@ -25,6 +25,9 @@ struct SubspaceOptions {
   int spare = 0;            ///< vectors of the search beside those asked for, at least half as many; 0: as many and six
   int restarts = 20;        ///< after which the search is given up
   int guess = 4;            ///< eigenvalues asked for first; more are found until one is below the radius
+  /// Where the search is given up it begins again with more vectors, as long as `most` allows it: many values of nearly
+  /// one modulus need them.
+  bool persistent = false;
 };
 
 /// Krylov-Schur (prefix "monodromy_") on v := M v from `start`. The number of vectors follows from the radius.
@@ -34,8 +37,8 @@ struct SubspaceOptions {
 
 /// The same for the multipliers of a cycle, above `radius` instead of options.radius. Where the search is given up the
 /// radius becomes 0.5 and stays so. Films on soft liners at high speed have a dense band of multipliers, as have stiff
-/// films at Gauss points: it takes no part in what the cycle does, and is left below. Throws core::NotConverged if the
-/// search is given up there too.
+/// films at Gauss points: it takes no part in what the cycle does, and is left below. That search is
+/// persistent. Throws core::NotConverged if it is given up too.
 [[nodiscard]] DominantSubspace dominant_multipliers(const std::function<void(Vec)>& multiply, Vec start,
                                                     SubspaceOptions options, double& radius);
 

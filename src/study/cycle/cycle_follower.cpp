@@ -98,8 +98,10 @@ std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<doubl
 }
 
 solve::Stability cycle_stability(solve::PeriodicProblem& problem, system::Plant& system) {
-  auto values = problem.multipliers();
-  std::vector<std::complex<double>> waves;
+  std::vector<std::complex<double>> values, waves;
+  solve::Stability out;
+  out.unknown = !has_answer([&] { values = problem.multipliers(); });
+  if (out.unknown) return out;
   auto* cycles = dynamic_cast<solve::CycleProblem*>(&problem);
   const bool asked = cycles && may_have_mesh_waves(system);
   const auto is_wave = [&](std::complex<double> mu) {
@@ -117,7 +119,7 @@ solve::Stability cycle_stability(solve::PeriodicProblem& problem, system::Plant&
     return std::ranges::any_of(waves, [&](auto wave) { return mu == wave || mu == std::conj(wave); });
   });
   std::erase_if(waves, [](auto mu) { return distance_of_multiplier(mu) <= 0; });
-  solve::Stability out = solve::make_stability(std::move(values), distance_of_multiplier);
+  out = solve::make_stability(std::move(values), distance_of_multiplier);
   out.mesh_waves = std::move(waves);
   return out;
 }

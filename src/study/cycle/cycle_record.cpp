@@ -65,8 +65,8 @@ std::vector<io::Table::Column> columns(const system::ShownPlaces& places, const 
   return {
       {"parameter", unit, "parameter of the branch"},
       {"period", "s", "period of the cycle"},
-      {"stable", "1", "1 if no multiplier is outside the unit circle"},
-      {"unstable_count", "1", "multipliers outside the unit circle"},
+      {"stable", "1", "1 if no multiplier is outside the unit circle; not a number where they are unknown"},
+      {"unstable_count", "1", "multipliers outside the unit circle; -1 where they are unknown"},
       {"mesh_waves", "1", "of a film's mesh that grow, pairs of multipliers outside the unit circle that are left out"},
       {"step", unit, "arclength from the previous point"},
       {"newton_iterations", "1", "of the accepted step"},
@@ -149,10 +149,13 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
     im[k] = point.stability.values[k].imag();
   }
   const int unstable = point.stability.unstable();
+  const bool unknown = point.stability.unknown;
   table_.append({{cycle.parameter / scale},
                  {cycle.period},
-                 {unstable == 0 ? 1.0 : 0.0},
-                 {static_cast<double>(unstable)},
+                 {unknown         ? io::no_value
+                  : unstable == 0 ? 1.0
+                                  : 0.0},
+                 {unknown ? -1.0 : static_cast<double>(unstable)},
                  {static_cast<double>(point.stability.mesh_waves.size())},
                  {point.step},
                  {static_cast<double>(point.newton_iterations)},
@@ -190,10 +193,10 @@ double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme&
 BranchVerdict CycleRecord::verdict() const {
   BranchVerdict verdict;
   for (std::size_t k = 0; k < table_.rows(); ++k) {
-    const int unstable = static_cast<int>(table_.column("unstable_count")[k]);
+    const int count = static_cast<int>(table_.column("unstable_count")[k]), unstable = std::max(count, 0);
     verdict.add(table_.column("parameter")[k], unstable > 0 ? StabilityClass::unstable : StabilityClass::stable,
                 unstable);
-    if (table_.column("mesh_waves")[k] > 0) verdict.unresolved(static_cast<int>(k));
+    if (count < 0 || table_.column("mesh_waves")[k] > 0) verdict.unresolved(static_cast<int>(k));
   }
   return verdict;
 }
@@ -309,6 +312,7 @@ void write_stability(io::Group& group, const solve::Stability& stability) {
   group.put("distance", stability.distance, "1", "from the border of stability");
   group.set("neutral", stability.neutral);
   group.set("missed", stability.missed);
+  group.set("unknown", stability.unknown ? 1 : 0);
   std::vector<double> waves;
   for (const auto& v : stability.mesh_waves) waves.insert(waves.end(), {v.real(), v.imag()});
   group.put("mesh_waves", waves, "1", "left out: real and imaginary part of each");
@@ -321,6 +325,7 @@ solve::Stability read_stability(const io::Group& group) {
   s.distance = group.reals("distance");
   s.neutral = static_cast<int>(group.integer("neutral"));
   s.missed = static_cast<int>(group.integer("missed"));
+  s.unknown = group.integer("unknown") != 0;
   const auto& waves = group.reals("mesh_waves");
   for (std::size_t k = 0; k + 1 < waves.size(); k += 2) s.mesh_waves.emplace_back(waves[k], waves[k + 1]);
   return s;

@@ -50,8 +50,9 @@ struct ContinuationOptions {
 struct Stability {
   std::vector<std::complex<double>> values;
   std::vector<double> distance;
-  int neutral = 0;  ///< values on the border as far as rounding can tell; none of them counts as unstable
-  int missed = 0;   ///< eigenvalues that a count found and the search did not; -1 if the count itself is not sure
+  int neutral = 0;       ///< values on the border as far as rounding can tell; none of them counts as unstable
+  int missed = 0;        ///< eigenvalues that a count found and the search did not; -1 if the count itself is not sure
+  bool unknown = false;  ///< the search did not converge: no values, and nothing follows from their number
   /// Growing pairs (imag > 0) that belong to the mesh of a discretisation and not to what it stands for: not among
   /// `values`.
   std::vector<std::complex<double>> mesh_waves{};
@@ -127,7 +128,8 @@ struct Refined {
 
 /// What a continuation asks about the solutions that it finds; all collective.
 struct BranchQuestions {
-  /// Stability at u, called after linearise(u).
+  /// Stability at u, called after linearise(u). Where it is unknown the branch goes on, and says between which points
+  /// events may have been missed.
   std::function<Stability(Vec u)> stability;
   /// The event near u on the branch with the given tangent, to rounding; nothing if that fails. The problem may be left
   /// linearised anywhere.
