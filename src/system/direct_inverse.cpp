@@ -28,8 +28,8 @@ public:
   LocalFactors(MPI_Comm /*comm*/, const film::Share& whole) : matrix_(whole, whole.d_states, &whole.d_rates) {
     lu_.analyse(matrix_.pattern());
   }
-  void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, Scalar sigma) {
-    lu_.factorise(matrix_.filled(d_states, d_rates, alpha, sigma));
+  void set(const film::StateDerivatives& at, double alpha, Scalar sigma) {
+    lu_.factorise(matrix_.filled(at.states, at.rates, alpha, sigma));
   }
   void solve(bool transposed, std::span<const Scalar> r, std::span<Scalar> x) {
     if (!lu_.regular()) return not_finite(x);
@@ -66,11 +66,11 @@ public:
     check(KSPCreate(comm, solver_.put()));
     core::make_direct(solver_.get());
   }
-  void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, Scalar sigma) {
+  void set(const film::StateDerivatives& at, double alpha, Scalar sigma) {
     check(MatZeroEntries(matrix_.get()));
     entries_.begin(matrix_.get());
-    for (std::size_t k = 0; k < states_.size(); ++k) add(states_[k], Scalar(alpha * d_states[k]));
-    for (std::size_t k = 0; k < rates_.size(); ++k) add(rates_[k], sigma * d_rates[k]);
+    for (std::size_t k = 0; k < states_.size(); ++k) add(states_[k], Scalar(alpha * at.states[k]));
+    for (std::size_t k = 0; k < rates_.size(); ++k) add(rates_[k], sigma * at.rates[k]);
     entries_.end();
     check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));
     check(KSPSetUp(solver_.get()));
@@ -122,17 +122,15 @@ private:
 
 /// Keeps what its factors are made from: those of a complex frequency are made when first wanted.
 template <template <class> class Factors>
-class DirectInverse final : public film::StateInverse {
+class DirectInverse final : public film::ExactStateInverse {
 public:
   DirectInverse(MPI_Comm comm, const film::Share& share) : comm_(comm), share_(share), real_(comm, share) {}
-  void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) override {
-    real_.set(d_states, d_rates, alpha, sigma);
-  }
+  void set(const film::StateDerivatives& at, double alpha, double sigma) override { real_.set(at, alpha, sigma); }
   void apply(std::span<const double> r, std::span<double> x) override { real_.solve(false, r, x); }
   void apply_transposed(std::span<const double> r, std::span<double> x) override { real_.solve(true, r, x); }
-  void set_at(std::span<const double> d_states, std::span<const double> d_rates, Complex lambda) override {
+  void set_at(const film::StateDerivatives& at, Complex lambda) override {
     if (!complex_) complex_.emplace(comm_, share_);
-    complex_->set(d_states, d_rates, 1.0, lambda);
+    complex_->set(at, 1.0, lambda);
   }
   void apply_at(std::span<const Complex> r, std::span<Complex> x) override { complex_->solve(false, r, x); }
 
@@ -145,7 +143,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<film::StatePreconditioner> make_direct_inverse(MPI_Comm comm, const film::Share& share) {
+std::unique_ptr<film::StateInverse> make_direct_inverse(MPI_Comm comm, const film::Share& share) {
   if (core::size_of(comm) > 1) return std::make_unique<DirectInverse<SharedFactors>>(comm, share);
   return std::make_unique<DirectInverse<LocalFactors>>(comm, share);
 }

@@ -12,6 +12,6 @@ namespace whirl::system {
 /// A^-1 to rounding, A = alpha dg/ds + sigma dg/ds', by a sparse LU of the rows of a film: Eigen's of a film on one
 /// rank, MUMPS's on `comm` of one whose shares stand on all ranks of it in their order. Complex frequencies on several
 /// ranks are solved in real form, twice the size. Collective.
-[[nodiscard]] std::unique_ptr<film::StatePreconditioner> make_direct_inverse(MPI_Comm comm, const film::Share& share);
+[[nodiscard]] std::unique_ptr<film::StateInverse> make_direct_inverse(MPI_Comm comm, const film::Share& share);
 
 }  // namespace whirl::system

@@ -1,6 +1,8 @@
 // The inverses of a machine's films, in the scales of its states and rows.
 
 #include <Eigen/Core>
+#include <complex>
+#include <span>
 
 #include "direct_inverse.hpp"
 #include "film_comms.hpp"
@@ -12,39 +14,57 @@ using core::check;
 using Map = Eigen::Map<Eigen::ArrayXd>;
 using ConstMap = Eigen::Map<const Eigen::ArrayXd>;
 
-class RotorSystem::FilmInverse final : public problem::ExactPartInverse {
+class RotorSystem::FilmInverses {
 public:
-  explicit FilmInverse(RotorSystem& system);
-  /// Whether a film offers one; else there are none. The same on all ranks.
+  explicit FilmInverses(RotorSystem& system);
+  /// Whether a film offers one, else there are none; whether all are exact. The same on all ranks.
   [[nodiscard]] bool offered() const { return offered_; }
-  void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override;
-  /// Exact if the inverses of all films are.
-  [[nodiscard]] problem::ExactPartInverse* exact() override { return exact_ ? this : nullptr; }
-  void apply(const double* r, double* y) override { apply_columns(r, y, 0, 1); }
-  void apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) override;
-  void apply_transposed(const double* r, double* y) override;
-  void set_at(Vec x, Vec rest, std::complex<double> lambda) override;
-  void apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows, int columns) override;
+  [[nodiscard]] bool exact() const { return exact_; }
+  void set(const problem::Point& at, double alpha, double sigma);
+  void apply(std::span<const double> r, std::span<double> y);
+  void apply_transposed(std::span<const double> r, std::span<double> y);
+  void set_at(const problem::Point& at, std::complex<double> lambda);
+  void apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> y);
 
 private:
   struct Film {
     std::size_t bearing = 0;
     Eigen::Index row = 0;  // among those of all films here
-    std::unique_ptr<film::StatePreconditioner> inverse;
+    std::unique_ptr<film::StateInverse> inverse;
     Eigen::ArrayXd state, residual;  // scales of its states and rows here, which a parameter may change
-    std::vector<double> rhs;
   };
-  /// Columns of a film among those of all: y = answer(r) / its scales of states, r times those of its rows.
+  /// answer(film, r, y) of the columns of each film among those of all: y = answer / its scales of states, r times
+  /// those of its rows; transposed, these change places.
   template <class Scalar, class Answer>
-  static void in_scales(const Film& film, const Scalar* r, Scalar* y, std::ptrdiff_t rows, int columns,
-                        Answer&& answer);
+  void in_scales(std::span<const Scalar> r, std::span<Scalar> y, bool transposed, Answer&& answer);
   /// Its derivatives at the state that was evaluated last.
-  const film::StateResponse& look(Film& film) const;
+  [[nodiscard]] film::StateDerivatives look(Film& film) const;
 
   RotorSystem& system_;
   std::shared_ptr<const FilmComms> comms_;  // outlives the inverses
   std::vector<Film> films_;                 // with rows on this rank
   bool offered_ = false, exact_ = true;
+};
+
+template <class Interface>
+class RotorSystem::OfFilms : public Interface {
+public:
+  explicit OfFilms(FilmInverses films) : films_(std::move(films)) {}
+  void set(const problem::Point& at, double alpha, double sigma) override { films_.set(at, alpha, sigma); }
+  void apply(std::span<const double> r, std::span<double> y) override { films_.apply(r, y); }
+
+protected:
+  FilmInverses films_;
+};
+
+class RotorSystem::OfExactFilms final : public OfFilms<problem::ExactPartInverse> {
+public:
+  using OfFilms::OfFilms;
+  void apply_transposed(std::span<const double> r, std::span<double> y) override { films_.apply_transposed(r, y); }
+  void set_at(const problem::Point& at, std::complex<double> lambda) override { films_.set_at(at, lambda); }
+  void apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> y) override {
+    films_.apply_at(r, y);
+  }
 };
 
 const RotorSystem::FilmComms& RotorSystem::film_comms() {
@@ -55,22 +75,23 @@ const RotorSystem::FilmComms& RotorSystem::film_comms() {
 std::unique_ptr<problem::PartInverse> RotorSystem::make_part_inverse() {
   if (n_own_ == 0) return nullptr;
   (void)film_comms();
-  auto inverse = std::make_unique<FilmInverse>(*this);
-  return inverse->offered() ? std::move(inverse) : nullptr;
+  FilmInverses films(*this);
+  if (!films.offered()) return nullptr;
+  if (films.exact()) return std::make_unique<OfExactFilms>(std::move(films));
+  return std::make_unique<OfFilms<problem::PartInverse>>(std::move(films));
 }
 
-RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.film_comms_) {
+RotorSystem::FilmInverses::FilmInverses(RotorSystem& s) : system_(s), comms_(s.film_comms_) {
   const PetscInt machine = s.local_size() - s.own_here_;
   for (const std::size_t b : FilmComms::in_order(*comms_, s.bearings_, [](const FilmPart&) { return true; })) {
     const FilmPart* part = s.bearings_[b].part.get();
     Film& film = films_.emplace_back();
     film.bearing = b;
     film.row = part->row() - machine;
-    film.inverse = part->film().preconditioner(comms_->of(b), part->share());
+    film.inverse = part->film().inverse(comms_->of(b), part->share());
     offered_ = offered_ || film.inverse;
     film.state.resize(part->rows());
     film.residual.resize(part->rows());
-    film.rhs.resize(static_cast<std::size_t>(part->rows()));
   }
   MPI_Allreduce(MPI_IN_PLACE, &offered_, 1, MPI_CXX_BOOL, MPI_LOR, s.comm_);
   if (!offered_) return;
@@ -82,70 +103,58 @@ RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.fil
   MPI_Allreduce(MPI_IN_PLACE, &exact_, 1, MPI_CXX_BOOL, MPI_LAND, s.comm_);
 }
 
-const film::StateResponse& RotorSystem::FilmInverse::look(Film& film) const {
+film::StateDerivatives RotorSystem::FilmInverses::look(Film& film) const {
   const FilmPart& part = *system_.bearings_[film.bearing].part;
   part.scales(film.state.data(), film.residual.data());
-  return part.response();
+  return {part.response().d_states, part.response().d_rates};
 }
 
-void RotorSystem::FilmInverse::set(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma) {
-  system_.evaluate_films(x, xdot, film::Need::tangents);
-  for (Film& film : films_) {
-    const film::StateResponse& own = look(film);
-    film.inverse->set(own.d_states, own.d_rates, alpha, sigma);
-  }
+void RotorSystem::FilmInverses::set(const problem::Point& at, double alpha, double sigma) {
+  system_.evaluate_films(at.x, at.xdot, film::Need::tangents);
+  for (Film& film : films_) film.inverse->set(look(film), alpha, sigma);
+}
+
+void RotorSystem::FilmInverses::set_at(const problem::Point& at, std::complex<double> lambda) {
+  system_.evaluate_films(at.x, at.xdot, film::Need::tangents);
+  for (Film& film : films_) film.inverse->exact()->set_at(look(film), lambda);
 }
 
 // A film's own inverse knows no scales.
 template <class Scalar, class Answer>
-void RotorSystem::FilmInverse::in_scales(const Film& film, const Scalar* r, Scalar* y, std::ptrdiff_t rows, int columns,
-                                         Answer&& answer) {
+void RotorSystem::FilmInverses::in_scales(std::span<const Scalar> r, std::span<Scalar> y, bool transposed,
+                                          Answer&& answer) {
   using Matrix = Eigen::Array<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-  const Eigen::Index n = film.state.size();
-  const Eigen::OuterStride<> stride(rows);
-  const Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> from(r + film.row, n, columns, stride);
-  Eigen::Map<Matrix, 0, Eigen::OuterStride<>> to(y + film.row, n, columns, stride);
-  const Matrix right = from.colwise() * film.residual.template cast<Scalar>();
-  Matrix found(n, columns);
-  const auto size = static_cast<std::size_t>(right.size());
-  answer(std::span<const Scalar>(right.data(), size), std::span<Scalar>(found.data(), size));
-  to = found.colwise() / film.state.template cast<Scalar>();
-}
-
-void RotorSystem::FilmInverse::apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) {
-  for (Film& film : films_)
-    in_scales(film, r, y, rows, columns, [&](std::span<const double> right, std::span<double> found) {
-      if (film.inverse->exact() != nullptr) return film.inverse->apply(right, found);
-      const auto n = static_cast<std::size_t>(film.state.size());
-      for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c)
-        film.inverse->apply(right.subspan(c * n, n), found.subspan(c * n, n));
-    });
-}
-
-void RotorSystem::FilmInverse::apply_transposed(const double* r, double* y) {
+  const Eigen::Index rows = system_.own_here_, columns = rows > 0 ? static_cast<Eigen::Index>(r.size()) / rows : 0;
   for (Film& film : films_) {
     const Eigen::Index n = film.state.size();
-    Map(film.rhs.data(), n) = ConstMap(r + film.row, n) / film.state;
-    film.inverse->exact()->apply_transposed(film.rhs, {y + film.row, film.rhs.size()});
-    Map(y + film.row, n) *= film.residual;
+    const Eigen::OuterStride<> stride(rows);
+    const Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> from(r.data() + film.row, n, columns, stride);
+    Eigen::Map<Matrix, 0, Eigen::OuterStride<>> to(y.data() + film.row, n, columns, stride);
+    Matrix right = from, found(n, columns);
+    if (transposed)
+      right.colwise() /= film.state.template cast<Scalar>();
+    else
+      right.colwise() *= film.residual.template cast<Scalar>();
+    answer(*film.inverse, std::span<const Scalar>(core::span_of(right)), core::span_of(found));
+    if (transposed)
+      to = found.colwise() * film.residual.template cast<Scalar>();
+    else
+      to = found.colwise() / film.state.template cast<Scalar>();
   }
 }
 
-void RotorSystem::FilmInverse::set_at(Vec x, Vec rest, std::complex<double> lambda) {
-  system_.evaluate_films(x, rest, film::Need::tangents);
-  for (Film& film : films_) {
-    const film::StateResponse& own = look(film);
-    film.inverse->exact()->set_at(own.d_states, own.d_rates, lambda);
-  }
+void RotorSystem::FilmInverses::apply(std::span<const double> r, std::span<double> y) {
+  in_scales(r, y, false, [](film::StateInverse& film, auto right, auto found) { film.apply(right, found); });
 }
 
-void RotorSystem::FilmInverse::apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows,
-                                        int columns) {
-  using Complex = std::complex<double>;
-  for (Film& film : films_)
-    in_scales(film, r, y, rows, columns, [&](std::span<const Complex> right, std::span<Complex> found) {
-      film.inverse->exact()->apply_at(right, found);
-    });
+void RotorSystem::FilmInverses::apply_transposed(std::span<const double> r, std::span<double> y) {
+  in_scales(r, y, true,
+            [](film::StateInverse& film, auto right, auto found) { film.exact()->apply_transposed(right, found); });
+}
+
+void RotorSystem::FilmInverses::apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> y) {
+  in_scales(r, y, false,
+            [](film::StateInverse& film, auto right, auto found) { film.exact()->apply_at(right, found); });
 }
 
 }  // namespace whirl::system

@@ -26,7 +26,7 @@ RotorSystem::Settling& RotorSystem::settling() {
   for (const std::size_t b :
        FilmComms::in_order(*film_comms_, bearings_, [](const FilmPart& part) { return part.settles(); })) {
     const FilmPart& part = *bearings_[b].part;
-    auto inverse = part.film().preconditioner(film_comms_->of(b), part.share());
+    auto inverse = part.film().inverse(film_comms_->of(b), part.share());
     core::require(inverse && inverse->exact() != nullptr, "films that settle by their own exact inverses");
     settling_->films.push_back({b, std::move(inverse), std::vector<double>(static_cast<std::size_t>(part.rows()))});
   }
@@ -53,7 +53,7 @@ void RotorSystem::settle(Vec x, bool still) {
       if (found[film.bearing]) continue;
       const FilmPart& part = *bearings_[film.bearing].part;
       const film::StateResponse& own = part.response();
-      film.inverse->set(own.d_states, own.d_rates, 1, 0);
+      film.inverse->set({own.d_states, own.d_rates}, 1, 0);
       film.inverse->apply(own.residual, film.step);
       for (const problem::Field& f : part.fields({}))
         f.each([&](PetscInt j) {

@@ -12,7 +12,7 @@ namespace whirl::system {
 struct RotorSystem::Settling {
   struct Film {
     std::size_t bearing;
-    std::unique_ptr<film::StatePreconditioner> inverse;
+    std::unique_ptr<film::StateInverse> inverse;
     std::vector<double> step;
   };
   std::shared_ptr<const FilmComms> comms;  // outlives the inverses

@@ -18,8 +18,8 @@ double rate(Film& film, const JournalMotion& m, const std::vector<double>& s, do
   StateResponse r;
   film.evaluate(m, s, zero, Need::tangents, r);
   const Share& all = film.whole();
-  const auto cycle = film.preconditioner(MPI_COMM_SELF, all);
-  cycle->set(r.d_states, r.d_rates, alpha, sigma);
+  const auto cycle = film.inverse(MPI_COMM_SELF, all);
+  cycle->set({r.d_states, r.d_rates}, alpha, sigma);
   std::vector<double> x(n, 0.0), residual(n), d(n);
   double size = 0.0, last = 0.0, first = 0.0;
   for (int k = 0; k < 8; ++k) {
@@ -64,7 +64,7 @@ double rate_of_gas(int rows, std::array<int, 2> cells, double eccentricity, doub
   return rate(*film.film, film.motion, film.states, 1.0, sigma);
 }
 
-TEST(StatePreconditioner, RateDoesNotDependOnTheMesh) {
+TEST(StateInverse, RateDoesNotDependOnTheMesh) {
   const double dt = 0.005 / 160.0;
   using enum Compliant::Differences;
   for (const auto cells :
@@ -83,7 +83,7 @@ TEST(StatePreconditioner, RateDoesNotDependOnTheMesh) {
       EXPECT_LT(rate(cells, dt, differences, true), 0.15) << cells[0] << " x " << cells[1];
 }
 
-TEST(StatePreconditioner, SolvesFilmsOfGasWithTheirOrifices) {
+TEST(StateInverse, SolvesFilmsOfGasWithTheirOrifices) {
   for (const int rows : {0, 1, 2})
     for (const auto cells : {std::array{32, 8}, std::array{96, 32}, std::array{192, 64}, std::array{45, 20}})
       for (const double eccentricity : {0.0, 0.7})

@@ -54,21 +54,24 @@ private:
   class Inverse : public problem::PartInverse {
   public:
     explicit Inverse(TwoFilms& system) : system_(system) {}
-    void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override {
+    void set(const problem::Point& at, double alpha, double sigma) override {
       ++system_.sets;
       core::Matrix a = system_.make_jacobian();
-      system_.jacobian(angle, x, xdot, alpha, sigma, a.get());
-      core::Vector d = core::duplicate(x);
+      system_.jacobian(at.angle, at.x, at.xdot, alpha, sigma, a.get());
+      core::Vector d = core::duplicate(at.x);
       core::check(MatGetDiagonal(a.get(), d.get()));
       const Eigen::VectorXd all = system_.gather(d.get());
       PetscInt begin = 0, end = 0;
-      core::check(VecGetOwnershipRange(x, &begin, &end));
+      core::check(VecGetOwnershipRange(at.x, &begin, &end));
       begin = std::max(begin, hub);
       inverse_ = system_.q_ * all.segment(begin, std::max<PetscInt>(end - begin, 0)).cwiseInverse();
     }
-    void apply(const double* r, double* y) override {
+    void apply(std::span<const double> r, std::span<double> y) override {
       ++system_.applications;
-      for (Eigen::Index i = 0; i < inverse_.size(); ++i) y[i] = inverse_(i) * r[i];
+      if (inverse_.size() == 0) return;
+      const Eigen::Index columns = static_cast<Eigen::Index>(r.size()) / inverse_.size();
+      const Eigen::Map<const Eigen::MatrixXd> given(r.data(), inverse_.size(), columns);
+      Eigen::Map<Eigen::MatrixXd>(y.data(), inverse_.size(), columns) = inverse_.asDiagonal() * given;
     }
 
   private:

@@ -96,9 +96,12 @@ public:
       if (Machine::part_of(i) != 0) rows.push_back(i);
     if (!rows.empty()) lu_.compute(whole(rows, rows));
   }
-  void set(double, Vec, Vec, double, double) override {}
-  void apply(const double* r, double* y) override {
-    if (const Index n = lu_.cols(); n > 0) Eigen::Map<VectorXd>(y, n) = lu_.solve(Eigen::Map<const VectorXd>(r, n));
+  void set(const problem::Point&, double, double) override {}
+  void apply(std::span<const double> r, std::span<double> y) override {
+    const Index n = lu_.cols();
+    if (n == 0) return;
+    const auto columns = static_cast<Index>(r.size()) / n;
+    Eigen::Map<MatrixXd>(y.data(), n, columns) = lu_.solve(Eigen::Map<const MatrixXd>(r.data(), n, columns));
   }
 
 private:

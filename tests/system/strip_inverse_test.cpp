@@ -27,13 +27,12 @@ struct Shared {
     for (std::size_t k = 0; k < q.size(); k += 7) q[k] = -1e-6;  // holes in the full film
     film->evaluate(m, q, rest, Need::tangents, whole);
     film->evaluate(m, share, seen_of(share, q), seen_of(share, rest), Need::tangents, here);
-    inverse =
-        c.direct ? system::make_direct_inverse(MPI_COMM_WORLD, share) : film->preconditioner(MPI_COMM_WORLD, share);
+    inverse = c.direct ? system::make_direct_inverse(MPI_COMM_WORLD, share) : film->inverse(MPI_COMM_WORLD, share);
   }
   std::unique_ptr<Film> film;
   Share share;
   StateResponse whole, here;
-  std::unique_ptr<StatePreconditioner> inverse;
+  std::unique_ptr<StateInverse> inverse;
 };
 
 class Strips : public ::testing::TestWithParam<Case> {};
@@ -50,7 +49,7 @@ TEST_P(Strips, AreSolvedExactly) {
   const std::vector<double> r(here.data(), here.data() + here.size());
   std::vector<double> x(r.size());
   for (const auto& [alpha, sigma] : {std::pair{1.0, 0.0}, std::pair{2e-6, 1.0}}) {
-    s.inverse->set(s.here.d_states, s.here.d_rates, alpha, sigma);
+    s.inverse->set({s.here.d_states, s.here.d_rates}, alpha, sigma);
     Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(*s.film, s.whole, sigma / alpha));
     for (const bool transposed : {false, true}) {
       const Eigen::MatrixXd exact = (transposed ? Eigen::MatrixXd(lu.transpose().solve(b)) : lu.solve(b)) / alpha;
@@ -79,7 +78,7 @@ TEST_P(Strips, AreSolvedAtComplexFrequencies) {
   const Eigen::MatrixXcd here = b.middleRows(s.share.begin, rows);
   const std::vector<Complex> r(here.data(), here.data() + here.size());
   std::vector<Complex> x(r.size());
-  s.inverse->exact()->set_at(s.here.d_states, s.here.d_rates, lambda);
+  s.inverse->exact()->set_at({s.here.d_states, s.here.d_rates}, lambda);
   s.inverse->exact()->apply_at(r, x);
   const Eigen::MatrixXcd found = Eigen::Map<const Eigen::MatrixXcd>(x.data(), rows, 2);
   for (Eigen::Index c = 0; c < 2; ++c)
@@ -106,20 +105,20 @@ INSTANTIATE_TEST_SUITE_P(Films, Strips, ::testing::ValuesIn(strips()),
 // What settled a film has factorised what Newton's method asks for next.
 TEST(StripInverses, ShareTheirFactors) {
   Shared s({content_films().front(), false});
-  const auto second = s.film->preconditioner(MPI_COMM_WORLD, s.share);
-  const auto made = [](const std::unique_ptr<StatePreconditioner>& i) {
+  const auto second = s.film->inverse(MPI_COMM_WORLD, s.share);
+  const auto made = [](const std::unique_ptr<StateInverse>& i) {
     return dynamic_cast<const StripInverse&>(*i).factorisations();
   };
-  s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
-  s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
-  second->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
+  s.inverse->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
+  s.inverse->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
+  second->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
   EXPECT_EQ(made(s.inverse), 1);
   EXPECT_EQ(made(second), 0);
   // Factors that another one holds stay what they are.
   const std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0);
   std::vector<double> before(r.size()), after(r.size());
   s.inverse->apply(r, before);
-  second->set(s.here.d_states, s.here.d_rates, 1.0, 50.0);
+  second->set({s.here.d_states, s.here.d_rates}, 1.0, 50.0);
   EXPECT_EQ(made(second), 1);
   s.inverse->apply(r, after);
   EXPECT_EQ(before, after);
@@ -130,7 +129,7 @@ TEST(StripInverses, OfSingularFilmsAreNotFinite) {
   for (const bool direct : {false, true}) {
     Shared s({content_films().front(), direct});
     std::fill(s.here.d_states.begin(), s.here.d_states.end(), 0.0);
-    s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
+    s.inverse->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
     std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0), x(r.size(), 0.0);
     s.inverse->apply(r, x);
     for (const double v : x) EXPECT_FALSE(std::isfinite(v)) << direct;

@@ -5,6 +5,7 @@
 #include <petscsf.h>
 #include <petscsnes.h>
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,6 +81,7 @@ public:
   ~ReadArray() { (void)VecRestoreArrayRead(v_, &data_); }
   [[nodiscard]] const double* data() const noexcept { return data_; }
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
+  [[nodiscard]] std::span<const double> span() const noexcept { return {data_, static_cast<std::size_t>(size_)}; }
   double operator[](PetscInt i) const noexcept { return data_[i]; }
 
 private:
@@ -100,6 +102,7 @@ public:
   ~WriteArray() { (void)VecRestoreArray(v_, &data_); }
   [[nodiscard]] double* data() const noexcept { return data_; }
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
+  [[nodiscard]] std::span<double> span() const noexcept { return {data_, static_cast<std::size_t>(size_)}; }
   double& operator[](PetscInt i) const noexcept { return data_[i]; }
 
 private:

@@ -215,7 +215,10 @@ private:
   };
   class MachineBlocks;
   class FilmComms;
-  class FilmInverse;
+  class FilmInverses;
+  template <class Interface>
+  class OfFilms;
+  class OfExactFilms;
   struct Settling;
   /// What the films of this rank see.
   struct FilmInputs {

@@ -363,13 +363,12 @@ RingPreconditioner::RingPreconditioner(MPI_Comm comm, int lines, int line, Lines
 
 RingPreconditioner::~RingPreconditioner() = default;
 
-void RingPreconditioner::set(std::span<const double> d_states, std::span<const double> d_rates, double alpha,
-                             double sigma) {
+void RingPreconditioner::set(const StateDerivatives& at_states, double alpha, double sigma) {
   const int n = here_.count();
   const std::size_t rows = at(n * line_);
   Level::Rows out{Block(line_, n), Block(line_, n), Block(line_, n)};
   const auto put = [&](Stencil::Place place, Columns& to) {
-    for (const auto& [values, factor] : {std::pair{d_states, alpha}, std::pair{d_rates, sigma}}) {
+    for (const auto& [values, factor] : {std::pair{at_states.states, alpha}, std::pair{at_states.rates, sigma}}) {
       if ((static_cast<std::size_t>(place) + 1) * rows > values.size()) continue;
       const double* from = Stencil::at(place, rows, values.data());
       for (int i = 0; i < n; ++i)
@@ -387,11 +386,14 @@ void RingPreconditioner::set(std::span<const double> d_states, std::span<const d
 
 void RingPreconditioner::apply(std::span<const double> r, std::span<double> x) {
   const int n = here_.count();
-  for (int i = 0; i < n; ++i)
-    for (int z = 0; z < line_; ++z) r_[at(z * n + i)] = static_cast<Real>(r[at(i * line_ + z)]);
-  top_->cycle(r_, x_);
-  for (int i = 0; i < n; ++i)
-    for (int z = 0; z < line_; ++z) x[at(i * line_ + z)] = x_[at(z * n + i)];
+  const std::size_t rows = r_.size();
+  for (std::size_t first = 0; first < r.size(); first += rows) {
+    for (int i = 0; i < n; ++i)
+      for (int z = 0; z < line_; ++z) r_[at(z * n + i)] = static_cast<Real>(r[first + at(i * line_ + z)]);
+    top_->cycle(r_, x_);
+    for (int i = 0; i < n; ++i)
+      for (int z = 0; z < line_; ++z) x[first + at(i * line_ + z)] = x_[at(z * n + i)];
+  }
 }
 
 }  // namespace whirl::film

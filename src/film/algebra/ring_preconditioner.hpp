@@ -26,7 +26,7 @@ namespace whirl::film {
 /// reduction, where these hold for all vectors. On several ranks levels so small that
 /// messages cost more (core::cost) are gathered to all. Source: Schaffer (1998) for semicoarsening; Ries, Trottenberg
 /// and Winter (1983) for the reduction.
-class RingPreconditioner final : public StatePreconditioner {
+class RingPreconditioner final : public StateInverse {
 public:
   /// `line` states in each of `lines` lines, of which this rank holds `here`. Every rank of `comm` holds two or more.
   RingPreconditioner(MPI_Comm comm, int lines, int line, Lines here);
@@ -34,7 +34,7 @@ public:
 
   /// Of a Stencil [rows x places] of dg/ds and one of dg/ds', of which places may be missing at the end; a second line
   /// before is lumped with the first.
-  void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) override;
+  void set(const StateDerivatives& at, double alpha, double sigma) override;
   /// In single precision.
   void apply(std::span<const double> r, std::span<double> x) override;
 

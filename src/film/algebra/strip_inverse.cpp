@@ -217,12 +217,11 @@ StripInverse::StripInverse(MPI_Comm comm, const Share& share, int line, const st
 StripInverse::~StripInverse() = default;
 
 template <class Scalar>
-StripInverse::Entries<Scalar> StripInverse::entries(std::span<const double> d_states, std::span<const double> d_rates,
-                                                    double alpha, Scalar sigma) const {
+StripInverse::Entries<Scalar> StripInverse::entries(const StateDerivatives& at, double alpha, Scalar sigma) const {
   Entries<Scalar> out = Entries<Scalar>::Zero(Index{places} * rows_);
-  for (std::size_t k = 0; k < state_places_.size(); ++k) out[state_places_[k]] += alpha * d_states[k];
+  for (std::size_t k = 0; k < state_places_.size(); ++k) out[state_places_[k]] += alpha * at.states[k];
   if (sigma != Scalar(0))
-    for (std::size_t k = 0; k < rate_places_.size(); ++k) out[rate_places_[k]] += sigma * d_rates[k];
+    for (std::size_t k = 0; k < rate_places_.size(); ++k) out[rate_places_[k]] += sigma * at.rates[k];
   return out;
 }
 
@@ -251,13 +250,13 @@ void StripInverse::find(Entries<Scalar> entries, std::shared_ptr<Factors<Scalar>
   ++factorisations_;
 }
 
-void StripInverse::set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) {
-  find(entries(d_states, d_rates, alpha, sigma), factors_, latest_->factors.lock());
+void StripInverse::set(const StateDerivatives& at, double alpha, double sigma) {
+  find(entries(at, alpha, sigma), factors_, latest_->factors.lock());
   latest_->factors = factors_;
 }
 
-void StripInverse::set_at(std::span<const double> d_states, std::span<const double> d_rates, Complex lambda) {
-  find(entries(d_states, d_rates, 1.0, lambda), factors_at_, {});
+void StripInverse::set_at(const StateDerivatives& at, Complex lambda) {
+  find(entries(at, 1.0, lambda), factors_at_, {});
 }
 
 template <class Scalar>

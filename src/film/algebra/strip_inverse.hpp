@@ -18,7 +18,7 @@ namespace whirl::film {
 /// first column behind the cut separates them: what lies before the first cut is eliminated up to it, what lies behind
 /// the last one back to it, both at the same time, and the columns at cuts are solved by all as one dense matrix.
 /// Cost: ColumnChain; a rank between two cuts of a strip takes three times as much.
-class StripInverse final : public StateInverse {
+class StripInverse final : public ExactStateInverse {
 public:
   using Complex = std::complex<double>;
   /// A strip: its first state in the film, and its columns.
@@ -35,10 +35,10 @@ public:
   ~StripInverse() override;
 
   /// Makes no factors if those at hand belong to the same derivatives, to rounding (1e-12 of each).
-  void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) override;
+  void set(const StateDerivatives& at, double alpha, double sigma) override;
   void apply(std::span<const double> r, std::span<double> x) override;
   void apply_transposed(std::span<const double> r, std::span<double> x) override;
-  void set_at(std::span<const double> d_states, std::span<const double> d_rates, Complex lambda) override;
+  void set_at(const StateDerivatives& at, Complex lambda) override;
   void apply_at(std::span<const Complex> r, std::span<Complex> x) override;
   /// Factorisations so far, of this inverse.
   [[nodiscard]] long factorisations() const { return factorisations_; }
@@ -55,8 +55,7 @@ private:
     int row, columns, cuts, mine, next;
   };
   template <class Scalar>
-  [[nodiscard]] Entries<Scalar> entries(std::span<const double> d_states, std::span<const double> d_rates, double alpha,
-                                        Scalar sigma) const;
+  [[nodiscard]] Entries<Scalar> entries(const StateDerivatives& at, double alpha, Scalar sigma) const;
   template <class Scalar>
   void solve(const Factors<Scalar>& factors, bool transposed, std::span<const Scalar> r, std::span<Scalar> x) const;
   // Factors of these from those at hand, `known` ones or anew.

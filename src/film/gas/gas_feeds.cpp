@@ -84,7 +84,7 @@ Share GasFilm::share(int begin, int end) const {
   return out;
 }
 
-std::unique_ptr<StatePreconditioner> GasFilm::preconditioner(MPI_Comm comm, const Share& share) const {
+std::unique_ptr<StateInverse> GasFilm::inverse(MPI_Comm comm, const Share& share) const {
   const Lines here = lines_of(share);
   int least = here.count();
   MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_INT, MPI_MIN, comm);

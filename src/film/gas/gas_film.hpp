@@ -61,7 +61,7 @@ public:
   [[nodiscard]] int cut(int near) const override;
   [[nodiscard]] Share share(int begin, int end) const override;
   /// A V-cycle; none where a rank holds less than two lines.
-  [[nodiscard]] std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm comm, const Share& share) const override;
+  [[nodiscard]] std::unique_ptr<StateInverse> inverse(MPI_Comm comm, const Share& share) const override;
   /// Line by line the film without slip between two plates as thick as here that a row of orifices feeds as a slit, in
   /// closed form but for the pressure behind the orifices.
   void unloaded(const JournalMotion& motion, std::span<double> states) const override;

@@ -49,20 +49,20 @@ Eigen::VectorXd GasInverse::read(const double* x) const {
   return out;
 }
 
-void GasInverse::set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) {
+void GasInverse::set(const StateDerivatives& at, double alpha, double sigma) {
   const auto nodes = static_cast<std::size_t>(held_);
-  ring_.set(d_states.first(5 * nodes), d_rates.first(nodes), alpha, sigma);
+  ring_.set({at.states.first(5 * nodes), at.rates.first(nodes)}, alpha, sigma);
   const Index count = reads_.rows();
   if (count == 0) return;
   reads_.setZero();
-  for (const Entry& e : to_orifice_) reads_(e.row, e.column) += alpha * d_states[e.value];
+  for (const Entry& e : to_orifice_) reads_(e.row, e.column) += alpha * at.states[e.value];
   sum_over_ranks(reads_);
   Eigen::MatrixXd small = Eigen::MatrixXd::Zero(count, count);
-  for (const Entry& e : between_) small(e.row, e.column) += alpha * d_states[e.value];
-  for (const Entry& e : by_rate_) small(e.row, e.column) += sigma * d_rates[e.value];
+  for (const Entry& e : between_) small(e.row, e.column) += alpha * at.states[e.value];
+  for (const Entry& e : by_rate_) small(e.row, e.column) += sigma * at.rates[e.value];
   sum_over_ranks(small);
   Eigen::MatrixXd given = Eigen::MatrixXd::Zero(held_, count);
-  for (const Entry& e : to_node_) given(e.row, e.column) += alpha * d_states[e.value];
+  for (const Entry& e : to_node_) given(e.row, e.column) += alpha * at.states[e.value];
   for (Index k = 0; k < count; ++k) {
     ring_.apply({given.col(k).data(), nodes}, {fed_.col(k).data(), nodes});
     small.col(k) -= reads_ * read(fed_.col(k).data());
@@ -71,6 +71,12 @@ void GasInverse::set(std::span<const double> d_states, std::span<const double> d
 }
 
 void GasInverse::apply(std::span<const double> r, std::span<double> x) {
+  const auto rows = static_cast<std::size_t>(held_ + (owns_ ? reads_.rows() : 0));
+  for (std::size_t first = 0; first < r.size(); first += rows)
+    apply_to_one(r.subspan(first, rows), x.subspan(first, rows));
+}
+
+void GasInverse::apply_to_one(std::span<const double> r, std::span<double> x) {
   const auto nodes = static_cast<std::size_t>(held_);
   ring_.apply(r.first(nodes), x.first(nodes));
   const Index count = reads_.rows();

@@ -19,15 +19,16 @@ namespace whirl::film {
 ///
 /// To eliminate the o first would be cheaper, but where a mesh resolves the orifices their share of a node's diagonal
 /// may have any sign, and the V-cycle suffers.
-class GasInverse final : public StatePreconditioner {
+class GasInverse final : public StateInverse {
 public:
   /// `share` as of GasFilm: a Stencil, then the entries of orifices, which depend on `nodes` of the film and whose
   /// `unknowns` are states of the last rank. Every rank of `comm` holds two lines or more.
   GasInverse(MPI_Comm comm, int lines, int line, const Share& share, std::vector<int> nodes, int unknowns);
-  void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) override;
+  void set(const StateDerivatives& at, double alpha, double sigma) override;
   void apply(std::span<const double> r, std::span<double> x) override;
 
 private:
+  void apply_to_one(std::span<const double> r, std::span<double> x);
   void sum_over_ranks(Eigen::Ref<Eigen::MatrixXd> values) const;
   // Of nodes here, at all nodes on which orifices depend.
   [[nodiscard]] Eigen::VectorXd read(const double* x) const;

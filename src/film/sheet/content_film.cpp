@@ -44,7 +44,7 @@ public:
     return (near + column / 2) / column * column;
   }
   [[nodiscard]] Share share(int begin, int end) const override { return lay_out(begin, end).share; }
-  [[nodiscard]] std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm comm, const Share& share) const override {
+  [[nodiscard]] std::unique_ptr<StateInverse> inverse(MPI_Comm comm, const Share& share) const override {
     const int line = solvers_.front()->column();
     std::vector<StripInverse::Extent> strips;
     for (std::size_t n = 0; n < pads_.size(); ++n)

@@ -296,7 +296,7 @@ Share FiniteFilm::share(int begin, int end) const {
   return out;
 }
 
-std::unique_ptr<StatePreconditioner> FiniteFilm::preconditioner(MPI_Comm comm, const Share& share) const {
+std::unique_ptr<StateInverse> FiniteFilm::inverse(MPI_Comm comm, const Share& share) const {
   const Lines here{share.begin / inner(), share.end / inner()};
   int least = here.count();
   MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_INT, MPI_MIN, comm);

@@ -71,7 +71,7 @@ public:
   // At whole lines. A share sees `reach` lines on either side, in front of its own and behind them.
   [[nodiscard]] int cut(int near) const override { return (near + inner() / 2) / inner() * inner(); }
   [[nodiscard]] Share share(int begin, int end) const override;
-  [[nodiscard]] std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm comm, const Share& share) const override;
+  [[nodiscard]] std::unique_ptr<StateInverse> inverse(MPI_Comm comm, const Share& share) const override;
   void unloaded(const JournalMotion& motion, std::span<double> states) const override {
     for (int i = 0; i < ring_.nodes(); ++i)
       std::fill_n(states.begin() + i * inner(), inner(), rigid(motion, i) * g_.clearance);

@@ -217,7 +217,7 @@ void EquilibriumProblem::linearise_parts(Vec row) {
     elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
   }
   for (const PortElimination* elimination : {ports_.get(), exact_.get()})
-    if (elimination && elimination->inverse()) elimination->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
+    if (elimination && elimination->inverse()) elimination->inverse()->set({0, x_.get(), rest_.get()}, 1, 0);
 }
 
 void EquilibriumProblem::linearise_whole(Vec row) {

@@ -47,16 +47,14 @@ void FrequencyInverse::set_at(Vec x, Vec rest, Complex lambda) {
       ksp_ = core::make_krylov(shell_.get(), gate_, options, [this](Vec r, Vec y) {
         const core::ReadArray ra(r);
         const core::WriteArray ya(y);
-        const Index n = by_a_.size();
-        approximate_->apply(ra.data(), ya.data());
-        approximate_->apply(ra.data() + n, ya.data() + n);
+        approximate_->apply(ra.span(), ya.span());  // two columns
       });
     }
     PortMatrix& m = rates ? *b_ : *a_;
     m.take(entries_.values());
     m.scale(rows.get(), columns.get());
   }
-  approximate_->set(0, x, rest, 1, std::abs(lambda));
+  approximate_->set({0, x, rest}, 1, std::abs(lambda));
 }
 
 void FrequencyInverse::multiply(const PortMatrix& m, const double* in, double* out) {

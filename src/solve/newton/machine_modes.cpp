@@ -54,7 +54,7 @@ public:
     core::check(VecSet(rest_.get(), 0));
   }
   void factorise(Mat a) override {
-    if (ports_.inverse()) ports_.inverse()->set(0, x_, rest_.get(), 1, target_);
+    if (ports_.inverse()) ports_.inverse()->set({0, x_, rest_.get()}, 1, target_);
     ports_.factorise(a);
   }
   void solve(Vec rhs, Vec x) override { ports_.solve(rhs, x); }

@@ -68,7 +68,7 @@ void PortElimination::make_solvers() {
     core::set_shell(pc, *gate_, [this](Vec r, Vec y) {
       const core::ReadArray ra(r);
       const core::WriteArray ya(y);
-      inverse_->apply(ra.data(), ya.data());
+      inverse_->apply(ra.span(), ya.span());
     });
   check(KSPSetFromOptions(ksp));
   PetscBool lu = PETSC_FALSE;
@@ -123,7 +123,7 @@ void PortElimination::solve_columns(const PortMatrix& blocks) {
   const MatrixXd& g = blocks.to_parts();
   x_.resize(g.rows(), g.cols());
   if (by_inverse_) {
-    inverse_->apply_columns(g.data(), x_.data(), g.rows(), static_cast<int>(g.cols()));
+    inverse_->apply(core::span_of(g), core::span_of(x_));
     return;
   }
   core::Matrix columns, answers;
@@ -279,7 +279,7 @@ void PortElimination::solve_parts(bool transposed) {
   if (by_inverse_ && (!transposed || exact != nullptr)) {
     const core::ReadArray r(part_rhs_.get());
     const core::WriteArray y(part_answer_.get());
-    transposed ? exact->apply_transposed(r.data(), y.data()) : inverse_->apply(r.data(), y.data());
+    transposed ? exact->apply_transposed(r.span(), y.span()) : inverse_->apply(r.span(), y.span());
     return;
   }
   KSP ksp = part_solver_.get();

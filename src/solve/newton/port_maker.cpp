@@ -29,7 +29,7 @@ std::shared_ptr<const PortMatrix> PortMaker::blocks(Mat a) {
 std::shared_ptr<PortElimination> PortMaker::eliminate(Mat a, const PortMatrix& blocks, double angle, Vec x, Vec xdot,
                                                       double own, bool held) {
   std::shared_ptr<PortElimination> out = unused(own != 0);
-  if (out->inverse()) out->inverse()->set(angle, x, xdot, own, 1);
+  if (out->inverse()) out->inverse()->set({angle, x, xdot}, own, 1);
   try {
     if (held)
       out->factorise_parts(a, blocks);

@@ -144,11 +144,10 @@ MatrixXcd TransferFunction::together(F&& columns) const {
 
 void TransferFunction::solve_together(const MatrixXcd& right, MatrixXcd Coupled::*to) {
   MatrixXcd x(right.rows(), right.cols());
-  const auto columns = static_cast<int>(right.cols());
   if (iterated_)
-    iterated_->apply_at(right.data(), x.data(), right.rows(), columns);
+    iterated_->apply_at(right.data(), x.data(), right.rows(), static_cast<int>(right.cols()));
   else
-    inverse_->exact()->apply_at(right.data(), x.data(), right.rows(), columns);
+    inverse_->exact()->apply_at(core::span_of(right), core::span_of(x));
   bool finite = x.allFinite();
   Index row = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -180,7 +179,7 @@ TransferFunction::Transfers TransferFunction::evaluate(Complex lambda, bool slop
     if (iterated_)
       iterated_->set_at(x_.get(), rest_.get(), lambda);
     else
-      inverse_->exact()->set_at(x_.get(), rest_.get(), lambda);
+      inverse_->exact()->set_at({0, x_.get(), rest_.get()}, lambda);
     solve_together(together(right), &Coupled::x);
     if (!slopes) return;
     if (iterated_) {

@@ -5,12 +5,12 @@
 #include <mpi.h>
 
 #include <array>
-#include <complex>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "whirl/core/inverse.hpp"
 #include "whirl/film/contract/options.hpp"
 #include "whirl/film/contract/response.hpp"
 #include "whirl/film/contract/share.hpp"
@@ -44,37 +44,13 @@ struct StateField {
   [[nodiscard]] double row_scale() const { return residual_scale > 0 ? residual_scale : scale * typical_frequency; }
 };
 
-class StateInverse;
-
-/// Inverse of A = alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one communicator, good
-/// to precondition with. All members but exact() are collective.
-class StatePreconditioner {
-public:
-  StatePreconditioner() = default;
-  StatePreconditioner(const StatePreconditioner&) = delete;
-  StatePreconditioner& operator=(const StatePreconditioner&) = delete;
-  virtual ~StatePreconditioner() = default;
-  /// Takes the derivatives of this rank's share, at its places.
-  virtual void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) = 0;
-  /// x = A^-1 r [rows]. Does not throw: the ranks that do not hold the film would wait for the others. Of a singular
-  /// matrix the answer is not finite.
-  virtual void apply(std::span<const double> r, std::span<double> x) = 0;
-  /// This, if apply() is A^-1 to rounding; else null.
-  [[nodiscard]] virtual StateInverse* exact() { return nullptr; }
+/// Derivatives dg/ds and dg/ds' of this rank's share of a film, at its places.
+struct StateDerivatives {
+  std::span<const double> states, rates;
 };
-
-/// A^-1 to rounding. apply() takes several columns [rows x columns] at once, as the other members do.
-class StateInverse : public StatePreconditioner {
-public:
-  [[nodiscard]] StateInverse* exact() final { return this; }
-  /// x = A^-T r.
-  virtual void apply_transposed(std::span<const double> r, std::span<double> x) = 0;
-  /// At a complex frequency: A = dg/ds + lambda dg/ds'.
-  virtual void set_at(std::span<const double> d_states, std::span<const double> d_rates,
-                      std::complex<double> lambda) = 0;
-  /// As apply(), at the lambda of set_at().
-  virtual void apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> x) = 0;
-};
+/// Inverse of alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one communicator.
+using StateInverse = core::Inverse<StateDerivatives>;
+using ExactStateInverse = core::ExactInverse<StateDerivatives>;
 
 /// A film: g(motion, s, s') = 0, force = f(motion, s, s') with states s of its own. Most films have none, as their
 /// pressure is condensed: force = f(motion), and everything about states is empty. Not thread-safe (own workspace).
@@ -123,7 +99,7 @@ public:
   /// True if the force does not depend on s' and dg/ds' depends on nothing.
   [[nodiscard]] virtual bool constant_rates() const { return true; }
   /// True if Newton's method on a film by itself is to take whole steps even where the residual rises: a film that is
-  /// linear but for the set of its full nodes, of which a whole step finds the next one. Its preconditioner is exact.
+  /// linear but for the set of its full nodes, of which a whole step finds the next one. Its inverse is exact.
   [[nodiscard]] virtual bool whole_steps() const { return false; }
   /// Rates of the states per velocity of the journal, [port][state], while nothing changes that the film remembers: the
   /// deflection of a liner, what a gap holds beyond its volume. Empty if they are zero. They do not depend on anything.
@@ -135,8 +111,7 @@ public:
                         std::span<double> /*to*/) const {}
   /// What the film offers to solve its linearised equations with, if `share` is this rank's of a film whose shares
   /// stand on all ranks of `comm`; null if it offers nothing, on all ranks. Collective.
-  [[nodiscard]] virtual std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm /*comm*/,
-                                                                            const Share& /*share*/) const {
+  [[nodiscard]] virtual std::unique_ptr<StateInverse> inverse(MPI_Comm /*comm*/, const Share& /*share*/) const {
     return nullptr;
   }
 
