@@ -1,9 +1,10 @@
-"""Shafts in space for ParaView: the sag and the mode shapes as solids of revolution that move, with the bores and their pressures.
+"""Shafts in space for ParaView: the sag, mode shapes and periodic motions as solids of revolution that move, with the bores and their pressures.
 
     scripts/scene results/modes [--shapes 6] [--phases 24] [--reach 0.1]
 
-writes STUDY.scene.xdmf and STUDY.scene.h5 beside results.h5, for each study that has a sag or shapes. ParaView's time is the part of a
-turn of the mode that has passed. Deflections are drawn larger, by the factor in the name of the block: a reach of 0.1 makes the largest
+writes STUDY.scene.xdmf and STUDY.scene.h5 beside results.h5, for each study that has a sag, shapes, or motions of the whole shaft: those
+are the cycles of a branch at the values of `at` and at its bifurcations. ParaView's time is the part of a turn of the mode, or of the period
+of the cycle, that has passed. Cycles are drawn about their mean position. Deflections are drawn larger, by the factor in the name of the block: a reach of 0.1 makes the largest
 one a tenth of the length of the shaft. Discs and added masses are part of the solid; a disc that the deck gives by its mass alone has a
 size that goes with its mass.
 """
@@ -17,7 +18,9 @@ import numpy as np
 
 from .machine import discs_of, right_radius
 from .manifest import register
+from .live_branches import axis_of
 from .shapes import at_words, normalised, tables_of
+from .style import MARKS
 from .subject import Drawn, called, said_in_a_sentence
 from .units import number
 
@@ -57,6 +60,20 @@ def solid(z, radius, bore, x, y):
     for k, r in enumerate((bore, radius)):
         out[k, ..., 0], out[k, ..., 1], out[k, ..., 2] = x + r * np.cos(angle)[:, None], y + r * np.sin(angle)[:, None], z
     return out
+
+
+def over_period(samples, moments):
+    """A periodic motion [time][place] about its mean at other moments [parts of the period], by its harmonics."""
+    n = len(samples)
+    order = np.arange(1, n // 2)
+    return np.real(np.exp(2j * np.pi * moments[:, None] * order) @ np.fft.rfft(samples, axis=0)[order]) * 2 / n
+
+
+def cycles_of(study):
+    """(what it is, x, y) of each cycle whose whole shaft is known, [time][node]."""
+    unit = axis_of(study)[1]
+    for what, parameter, period, x, y in zip(*(study.get(f"shaft/{k}", []) for k in ("what", "parameter", "period", "x", "y"))):
+        yield f"{'motion' if what == 'at' else MARKS.get(what, ('', '', what))[2]} at {parameter:.5g} {unit}".rstrip() + f", {1 / period:.4g} Hz", x, y
 
 
 class Scene:
@@ -119,9 +136,9 @@ class Scene:
 
 
 def write(study, shapes=6, phases=24, reach=0.1):
-    """The files of a study; none if it has neither a sag nor shapes."""
-    tables = list(tables_of(study))
-    if not tables and not study.has("nodes/z", "nodes/y"):
+    """The files of a study; none if it has neither a sag nor shapes nor motions of the whole shaft."""
+    tables, cycles = list(tables_of(study)), list(cycles_of(study))
+    if not tables and not cycles and not study.has("nodes/z", "nodes/y"):
         return []
     name = study.name.replace("/", "_").replace("\0", "_")  # as the program names files
     scene = Scene(study, pathlib.Path(study.results.directory) / f"{name}.scene.xdmf")
@@ -133,6 +150,10 @@ def write(study, shapes=6, phases=24, reach=0.1):
             at, to_frequency, unit = at_words(study, speed)
             moving = [np.real(np.exp(2j * np.pi * turn)[:, None] * line) for line in (x, y)]
             scene.shaft(f"mode {shape.mode} {at}: {shape.frequency * to_frequency:.4g} {unit}", z, *moving, turn, factor)
+    for what, x, y in cycles:
+        z, (x, y) = study.get("shaft/z"), (over_period(v, turn) for v in (x, y))
+        factor = reach * np.ptp(z) / (np.hypot(x, y).max() or 1.0)
+        scene.shaft(f"{what}, drawn {factor:.3g} times", z, x, y, turn, factor)
     times, moved = turn if tables else [0.0], lambda z: np.zeros(2)
     if study.has("nodes/z", "nodes/y"):
         z, y = study.get("nodes/z"), study.get("nodes/y")
@@ -157,7 +178,7 @@ def main(arguments):
     with said_in_a_sentence("scene"), Drawn(given.directory) as results:
         files = [file for study in results.studies for file in write(study, given.shapes, given.phases, given.reach)]
     if not files:
-        print(f"scene: no study in {given.directory} has a sag or mode shapes", file=sys.stderr)
+        print(f"scene: no study in {given.directory} has a sag, mode shapes or motions of a whole shaft", file=sys.stderr)
         return 1
     print("\n".join(map(str, files)))
     return 0

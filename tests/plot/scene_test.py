@@ -57,6 +57,12 @@ def results_in(folder):
         bend = np.sin(np.pi * z / 2)
         synthetic.put(m.create_group("shapes"), z=z, speed=[100.0], mode=[1], frequency=[50.0], whirl=["forward"], log_decrement=[0.1],
                       x_real=[bend], x_imag=[0 * z], y_real=[0 * z], y_imag=[-bend])
+        # About a mean far away: a forward circle once a period and a smaller backward one three times; then a line in x.
+        c = synthetic.study(root, "whirl", "cycle_branch", parameter="speed", parameter_unit="rpm")
+        angle = 2 * np.pi * np.arange(64)[:, None] / 64
+        circles = 1e-5 * bend * (np.exp(1j * angle) + 0.25 * np.exp(-3j * angle)) + 2e-3 - 5e-3j
+        synthetic.put(c.create_group("shaft"), z=z, what=["at", "flip"], parameter=[3600.0, 4093.66], period=[1 / 60, 2 / 65],
+                      x=[circles.real, bend * np.cos(angle)], y=[circles.imag, 0 * bend * angle])
     # A hollow shaft with a disc of 0.2 m at its middle and an added mass along its second half.
     (folder / "resolved.yaml").write_text("rotor: {segments: [{length: 1 m, outer_mass_diameter: 0.2 m, inner_mass_diameter: 0.05 m}, {length: 1 m, outer_mass_diameter: 0.1 m, "
                                           "added_mass: 3 kg, added_mass_outer_diameter: 0.14 m}], discs: [{node: 2, mass: 9 kg, outer_diameter: 0.5 m, thickness: 0.2 m}]}\n")
@@ -68,7 +74,8 @@ with tempfile.TemporaryDirectory() as name:
     with contextlib.redirect_stdout(io.StringIO()) as out:
         check("the command", scene.main([name, "--phases", "8", "--reach", "0.1"]) == 0)
     files = [pathlib.Path(line) for line in out.getvalue().split("\n") if line]
-    check("files", [f.name for f in files] == ["at service speed.scene.xdmf", "at service speed.scene.h5", "mode shapes.scene.xdmf", "mode shapes.scene.h5"], files)
+    check("files", [f.name for f in files] == ["at service speed.scene.xdmf", "at service speed.scene.h5", "mode shapes.scene.xdmf", "mode shapes.scene.h5",
+                                                  "whirl.scene.xdmf", "whirl.scene.h5"], files)
 
     (title, steps), = blocks_of(files[2]).items()
     check("name of a mode", title.startswith("mode 1 at speed 100 rad/s: 7.958 Hz"), title)
@@ -82,6 +89,16 @@ with tempfile.TemporaryDirectory() as name:
     check("a solid of revolution of the deck's radii with its disc and added mass", np.allclose(radii[:, 1], [0.1, 0.1, 0.25, 0.25, 0.25, 0.25, 0.07, 0.07], rtol=1e-4), radii[0, 1])
     check("a bore as far as the shaft is hollow", np.allclose(radii[:, 0], [0.025] * 4 + [0] * 4, atol=1e-6), radii[0, 0])
 
+    cycles = blocks_of(files[4])
+    check("cycles asked for and at bifurcations", list(cycles) == ["motion at 3600 rpm, 60 Hz, drawn 1.6e+04 times", "period doubling (flip) at 4093.7 rpm, 32.5 Hz, drawn 0.2 times"],
+          list(cycles))
+    (whirl, line) = ([corners[:, :-1].mean(axis=(0, 1)) for _, corners in steps] for steps in cycles.values())
+    angle = 2 * np.pi * np.arange(9) / 8
+    wanted = 0.2 / 1.25 * (np.exp(1j * angle) + 0.25 * np.exp(-3j * angle))
+    found = np.array([c[middle, 0] + 1j * c[middle, 1] for c in whirl])
+    check("the shaft runs through its period about its mean position", np.allclose(found, wanted, atol=1e-6), found - wanted)
+    check("a motion in one plane stays there", np.allclose([c[middle, :2] for c in line], np.stack([0.2 * np.cos(angle), 0 * angle], 1), atol=1e-6))
+
     static = blocks_of(files[0])
     check("sag and bores in one file", list(static) == ["sag, drawn 2e+03 times", "A & B pad1"], list(static))
     sag = static["sag, drawn 2e+03 times"][0][1][:, :-1].mean(axis=(0, 1))
@@ -92,6 +109,6 @@ with tempfile.TemporaryDirectory() as name:
     with h5py.File(folder / "results.h5", "w") as root:
         synthetic.study(root, "empty", "motion")
     with contextlib.redirect_stderr(io.StringIO()) as err:
-        check("nothing to show is said", scene.main([name]) == 1 and "sag or mode shapes" in err.getvalue(), err.getvalue())
+        check("nothing to show is said", scene.main([name]) == 1 and "sag, mode shapes" in err.getvalue(), err.getvalue())
 
 print("the scenes hold the shafts")

@@ -237,10 +237,30 @@ def without_equilibrium(h, mpirun):
     h.true("and on two ranks", np.allclose(columns["lost"][1], columns["lost_2"][1], rtol=1e-6, equal_nan=True))
 
 
+def shaft_of_cycles(h):
+    """The whole shaft over a cycle asked for, on linear bearings alike in both directions: forward circles of the linear response about
+    the sag line."""
+    h.run(h.source / "tests/cases/shaft_mesh.yaml", "cycles", [
+        "unbalance={u: {planes: [{node: 2, amount: 1e-5 kg m}, {node: 1, amount: 2e-5 kg m, phase: 70 deg}]}}",
+        "studies=[{static: {name: s, speed: 410 rad/s}}, "
+        "{unbalance_response: {name: r, unbalance: [u], range: {from: 410 rad/s, to: 411 rad/s}, points: 2, nodes: [1, 2, 3], refine: false}}, "
+        "{cycle_branch: {name: c, unbalance: [u], parameter: speed, range: {from: 400 rad/s, to: 420 rad/s}, at: [410 rad/s], intervals: 12, degree: 4, "
+        "points: gauss}}]"], bars=False)
+    with h5py.File(h.work / "cycles/results.h5") as f:
+        shaft, sag, linear = (f[f"studies/{path}"] for path in ("c/shaft", "s/nodes", "r/response/semi_major"))
+        h.true("the cycle that was asked for", list(shaft["what"].asstr()) == ["at"] and np.allclose(shaft["parameter"], 410)
+               and np.allclose(shaft["period"], 2 * np.pi / 410) and np.array_equal(shaft["z"], sag["z"]))
+        parts = np.fft.fft(shaft["x"][0] + 1j * shaft["y"][0], axis=0) / shaft["x"].shape[1]
+        for k, wanted in enumerate(linear[0]):
+            h.close(f"node {k + 1}: forward circle [m]", abs(parts[1, k]), wanted, 1e-6 * wanted)
+            h.close("    and nothing else [m]", np.abs(parts[2:, k]).max(), 0, 1e-6 * wanted)
+            h.close("    about the sag line [m]", abs(parts[0, k] - sag["x"][k] - 1j * sag["y"][k]), 0, 1e-6 * abs(sag["y"][k]))
+
+
 if __name__ == "__main__":
     program, source, *mpirun = sys.argv[1:]
     harness = Harness(program, source, [])
-    for case in (false_peaks, always_unstable, past_threshold, turbine, pump, wide, near, flushed):
+    for case in (false_peaks, always_unstable, past_threshold, turbine, pump, wide, near, flushed, shaft_of_cycles):
         case(harness)
     undamped(harness, mpirun)
     without_equilibrium(harness, mpirun)

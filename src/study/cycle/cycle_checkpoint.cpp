@@ -76,6 +76,7 @@ void CycleFollower::save(const solve::ResumePoint& at, Vec u, Vec tangent) {
   io::Group state;
   record_.write(state.child("record"), true);
   nodes_.write(state);
+  shafts_.write(state);
   multiplier_bars_.write(state.child("multiplier_bars"));
   put_changes(state.child("changes"), changes_, unit_);
   write_cycle(state.child("cycle"), cycle, stored());
@@ -112,6 +113,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   const io::Group& state = pieces_->state();
   record_.read(state.group("record"));
   nodes_.read(state);
+  shafts_.read(state);
   multiplier_bars_.read(state.group("multiplier_bars"));
   changes_ = changes_in(state.group("changes"));
   const solve::Cycle cycle = read_cycle(state.group("cycle"), stored()),

@@ -45,6 +45,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
       record_(system_->places(), unit_, options_.multipliers),
       films_(system_->places()),
       nodes_(options_.nodes, unit_),
+      shafts_(unit_),
       multiplier_bars_(multiplier_table(unit_)),
       keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
@@ -203,8 +204,9 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
 
 void CycleFollower::report(const std::string& key, Vec u) {
   io::StudySummary own;
-  record_.report(key, problem_->orbit(u), problem_->orbit_scheme(), *system_, stability_of(*problem_, *system_), own);
-  const solve::Cycle cycle = problem_->gather(u);
+  const solve::Cycle cycle = problem_->gather(u), orbit = problem_->orbit(u);
+  record_.report(key, orbit, problem_->orbit_scheme(), *system_, stability_of(*problem_, *system_), own);
+  shafts_.append("at", cycle.parameter / scale_, orbit, problem_->orbit_scheme(), *system_);
   SummaryBars bars(own, law());
   for (const CycleMesh& mesh : meshes())
     bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
@@ -328,6 +330,7 @@ StudyResult CycleFollower::run() {
   }
   record_.write(group, false);
   nodes_.write(group);
+  shafts_.write(group);
   multiplier_bars_.write(group.child("multiplier_bars"));
   record_.write_orbits(group.child("orbits"), options_.orbits);
   put_places(group, context_.machine, *system_);

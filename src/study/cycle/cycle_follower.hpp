@@ -245,6 +245,7 @@ private:
   FilmLimit films_;
   MarginSlope margins_;
   NodeRecord nodes_;
+  ShaftOrbits shafts_;
   io::Table multiplier_bars_;
   std::optional<solve::Cycle> last_;
   std::optional<Watched> nearest_;

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "study/state_rows.hpp"
+#include "whirl/rotor/shaft.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {
 namespace {
 
 constexpr int samples_per_turn = 128;
+constexpr std::size_t samples_in_space = 64;
 
 std::vector<io::Table::Column> columns(const std::string& unit, const std::vector<int>& nodes) {
   const std::vector<std::string> n = io::node_labels(nodes);
@@ -79,6 +81,47 @@ void NodeRecord::write(io::Group& group) const {
 
 void NodeRecord::read(const io::Group& group) {
   if (!nodes_.empty()) table_.read(group.group("nodes"));
+}
+
+void ShaftOrbits::append(const std::string& what, double parameter, const solve::Cycle& cycle,
+                         const solve::Scheme& scheme, system::Plant& system) {
+  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
+  if (!rotor || rotor->train().rotor.type == rotor::Options::Type::rigid) return;
+  z_ = rotor::node_positions(rotor->train().rotor);
+  StateRows states(system);
+  for (std::size_t k = 0; k < samples_in_space; ++k) {
+    const double s = static_cast<double>(k) / samples_in_space;
+    const std::vector<double> shaft = rotor->shaft(states.vector(cycle.at(scheme, s)), 0, true);
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+      x_.push_back(shaft[4 * i]);
+      y_.push_back(shaft[4 * i + 1]);
+    }
+  }
+  what_.push_back(what);
+  parameter_.push_back(parameter);
+  period_.push_back(cycle.period);
+}
+
+void ShaftOrbits::write(io::Group& group) const {
+  if (what_.empty()) return;
+  auto& mine = group.child("shaft");
+  const io::Shape shape{what_.size(), samples_in_space, z_.size()};
+  mine.put("x", shape, x_, "m", "horizontal position of the shaft over a period [cycle][time][node]");
+  mine.put("y", shape, y_, "m", "vertical position of the shaft over a period, positive up [cycle][time][node]");
+  mine.label_each({{}, io::numbered(z_.size(), "node")});
+  mine.put("z", z_, "m", "axial position of the nodes");
+  mine.put("what", what_, "'at': a cycle asked for; else the bifurcation that lies there");
+  mine.put("parameter", parameter_, unit_, "where on the branch");
+  mine.put("period", period_, "s", "period of the cycle");
+}
+
+void ShaftOrbits::read(const io::Group& group) {
+  if (!group.has_group("shaft")) return;
+  const io::Group& mine = group.group("shaft");
+  what_ = mine.strings("what");
+  for (auto& [name, to] :
+       {std::pair{"x", &x_}, {"y", &y_}, {"z", &z_}, {"parameter", &parameter_}, {"period", &period_}})
+    *to = mine.reals(name);
 }
 
 }  // namespace whirl::study

@@ -1,5 +1,5 @@
 #pragma once
-// How far the shaft moves at chosen nodes over a branch of cycles.
+// What the shaft does over a branch of cycles: how far it moves at chosen nodes, and the whole of it on chosen cycles.
 
 #include <string>
 #include <vector>
@@ -37,6 +37,26 @@ private:
   std::vector<int> nodes_;
   std::string unit_;
   io::Table table_;
+};
+
+/// The shaft in space over one period of cycles that are asked for or at which something happens. Replicated on all
+/// ranks.
+class ShaftOrbits {
+public:
+  explicit ShaftOrbits(std::string unit) : unit_(std::move(unit)) {}
+  /// Adds a cycle with what it is (`at`, or the kind of the bifurcation) and its parameter in the unit of the branch.
+  /// Collective on the system's communicator. Nothing happens if the system is no rotor with nodes along a shaft.
+  void append(const std::string& what, double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
+              system::Plant& system);
+  /// `shaft`: `what`, `parameter`, `period` [s] of each cycle, `x` and `y` [m] [cycle][time][node] and the nodes' `z`;
+  /// nothing without cycles.
+  void write(io::Group& group) const;
+  void read(const io::Group& group);
+
+private:
+  std::string unit_;
+  std::vector<std::string> what_;
+  std::vector<double> z_, parameter_, period_, x_, y_;
 };
 
 }  // namespace whirl::study
