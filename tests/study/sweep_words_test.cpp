@@ -4,6 +4,7 @@
 
 #include "study/sweep/sweep_table.hpp"
 #include "study/sweep/verdict_words.hpp"
+#include "whirl/study/sweep/sweep.hpp"
 
 using namespace whirl;
 
@@ -112,4 +113,29 @@ TEST(SweepWarnings, SwallowNone) {
                                {})
                 .size(),
             a.size() + 3);
+}
+
+// Four digits where they tell the rows apart, else more; the names in the results stay.
+TEST(SweepBrief, NamesAreAsShortAsTheyDiffer) {
+  const auto shown = [](const Lines& names) {
+    study::StudyResult result;
+    io::SweepColumn column{"m.threshold", "rad/s", {}, {}};
+    for (const std::string& name : names) {
+      result.summary.variants.push_back({name, {}, {}});
+      result.summary.variants.back().studies.emplace_back().name = "m";
+      column.values.push_back(1);
+      column.uncertainties.push_back(0.1);
+    }
+    result.summary.columns = {column};
+    Lines out;
+    const io::Brief brief = study::Sweep().brief(result, {});
+    for (const auto& row : brief.tables.at(0).rows) out.push_back(row.at(0).text);
+    return out;
+  };
+  EXPECT_EQ(shown({"clearance x0.933333333333, supply 4.66666666667 bar", "clearance x1.06666666667, supply 2 bar"}),
+            (Lines{"clearance x0.9333, supply 4.667 bar", "clearance x1.067, supply 2 bar"}));
+  EXPECT_EQ(shown({"speed 10000.0333333 rpm", "speed 12345.6666667 rpm", "load 1.5e+06 N", "G2.5", "pads 1.25"}),
+            (Lines{"speed 10000 rpm", "speed 12346 rpm", "load 1.5e+06 N", "G2.5", "pads 1.25"}));
+  EXPECT_EQ(shown({"gap 1.00013333333 mm", "gap 1.00016666667 mm", "gap 1.33333333333e-05 m"}),
+            (Lines{"gap 1.0001 mm", "gap 1.0002 mm", "gap 1.3333e-05 m"}));
 }

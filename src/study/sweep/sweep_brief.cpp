@@ -77,6 +77,20 @@ std::string in_short(std::string value) {
   return value + speed;
 }
 
+// Words with `digits` digits of each long decimal number: "x0.9333" of "x0.933333333333".
+std::string with_digits(const std::string& words, int digits) {
+  static const std::regex decimal(R"(([0-9]+)\.[0-9]{4,}(?:e[+-]?[0-9]+)?)");
+  std::string out;
+  auto from = words.cbegin();
+  for (std::sregex_iterator at(words.begin(), words.end(), decimal), end; at != end; ++at) {
+    const int whole = static_cast<int>(at->length(1));
+    out.append(from, (*at)[0].first);
+    out += fmt::format("{:.{}g}", std::stod(at->str()), std::max(digits, whole));
+    from = (*at)[0].second;
+  }
+  return out.append(from, words.cend());
+}
+
 class SweepBrief {
 public:
   SweepBrief(const io::StudySummary& s, std::span<const io::StudySummary> before) : s_(s) {
@@ -96,6 +110,9 @@ public:
       verdicts_.push_back(verdict_of(v.studies));
       rows_.push_back(v.studies);
     }
+    for (digits_ = 4; digits_ < 12 && !distinct(); ++digits_) {
+    }
+    for (std::string& name : shown_names_ = names_) name = short_name(name);
     choose();
   }
 
@@ -113,6 +130,12 @@ public:
   }
 
 private:
+  [[nodiscard]] std::string short_name(const std::string& name) const { return with_digits(name, digits_); }
+  // Whether no two rows have the same short name.
+  [[nodiscard]] bool distinct() const {
+    std::set<std::string> all;
+    return std::ranges::all_of(names_, [&](const std::string& name) { return all.insert(short_name(name)).second; });
+  }
   // Names of studies may have dots.
   [[nodiscard]] std::string study_of(const std::string& column) const {
     std::string found = column.substr(0, column.find('.'));
@@ -252,7 +275,7 @@ private:
     bool all = !verdicts_.empty();
     for (std::size_t i = 0; i < verdicts_.size(); ++i) {
       all = all && verdicts_[i].found == StabilityWord::stable;
-      if (verdicts_[i].found >= StabilityWord::in_part) unstable.push_back(names_[i]);
+      if (verdicts_[i].found >= StabilityWord::in_part) unstable.push_back(shown_names_[i]);
     }
     const std::size_t shown = std::min<std::size_t>(6, unstable.size());
     if (unstable.empty()) return all ? "all are stable where their studies looked" : "";
@@ -267,7 +290,8 @@ private:
     std::vector<std::string> words;
     for (const io::VariantSummary& v : s_.variants)
       for (const io::StudySummary& study : v.studies)
-        if (study.status != "completed") words.push_back(fmt::format("{}, {}: {}", v.name, study.name, study.status));
+        if (study.status != "completed")
+          words.push_back(fmt::format("{}, {}: {}", short_name(v.name), study.name, study.status));
     if (words.empty()) return {};
     const std::size_t shown = std::min<std::size_t>(3, words.size());
     return fmt::format("not completed: {}{}",
@@ -283,7 +307,7 @@ private:
       if (verdicts_[i].found <= StabilityWord::undamped) continue;
       marked = true;
       if (verdicts_[i].words != "unstable" && verdicts_[i].words != name_of(verdicts_[i].found))
-        told.push_back(names_[i] + ": " + verdicts_[i].words);
+        told.push_back(shown_names_[i] + ": " + verdicts_[i].words);
     }
     std::string text;
     const bool peaks =
@@ -307,7 +331,7 @@ private:
 
   [[nodiscard]] std::vector<io::BriefTable> variants() const {
     std::size_t first = 7;
-    for (const std::string& name : names_) first = std::max(first, name.size());
+    for (const std::string& name : shown_names_) first = std::max(first, name.size());
     std::vector<io::BriefTable> out;
     std::size_t width = widest;
     std::string study;
@@ -319,7 +343,7 @@ private:
             "Variants" + (studies_.size() > 1 ? ": " + c.study : "") + (c.study == study ? ", further values" : "");
         study = c.study;
         t.columns = {{"variant"}, {"verdict"}};
-        for (std::size_t i = 0; i < names_.size(); ++i) t.rows.push_back({names_[i], verdict(i, c.study)});
+        for (std::size_t i = 0; i < names_.size(); ++i) t.rows.push_back({shown_names_[i], verdict(i, c.study)});
         width = 4 + first + 2 + usual_cell;
       }
       width += own;
@@ -342,7 +366,8 @@ private:
       if (!c || trend.difference.empty()) continue;
       auto& row = t.rows.emplace_back();
       row.emplace_back(c->name);
-      row.emplace_back(words_of(trend.quantity, s_.name) + (trend.beside.empty() ? "" : "; " + trend.beside));
+      row.emplace_back(words_of(trend.quantity, s_.name) +
+                       (trend.beside.empty() ? "" : "; " + short_name(trend.beside)));
       row.emplace_back(io::reading({trend.at.front(), trend.unit}));
       row.emplace_back(io::reading({trend.at.back(), trend.unit}));
       row.emplace_back(course(trend.sign));
@@ -369,7 +394,7 @@ private:
       if (std::ranges::any_of(rows_, [&](const auto& row) { return std::ranges::any_of(row, reduced); }))
         t.note += "; the bars leave out the reduction of the shaft";
       for (std::size_t i = 0; i < rows_.size(); ++i) {
-        t.columns.push_back({names_[i], "Hz"});
+        t.columns.push_back({shown_names_[i], "Hz"});
         const auto at = std::ranges::find(rows_[i], study, &io::StudySummary::name);
         if (at == rows_[i].end() || at->kind != "modes") continue;
         const auto& modes = at->modes;
@@ -391,7 +416,8 @@ private:
 
   const io::StudySummary& s_;
   std::set<std::string> studies_;
-  std::vector<std::string> names_;  // of the rows
+  std::vector<std::string> names_, shown_names_;  // of the rows, as stored and as short as they differ
+  int digits_ = 4;
   std::vector<VariantVerdict> verdicts_;
   std::vector<std::vector<io::StudySummary>> rows_;
   std::vector<Shown> chosen_;
