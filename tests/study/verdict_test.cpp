@@ -143,6 +143,34 @@ TEST(Verdict, IsUndeterminedWhereAPointIsDoubtful) {
   EXPECT_EQ(w.text(), "loses stability");
 }
 
+// Multipliers of 1.01 +- 0.1 near the birth and 1.5 +- 0.1 beyond: what is known beyond is not lost.
+TEST(Verdict, DoubtReachesToTheNextSettledPoint) {
+  const std::vector<Seen> points{{5, 1}, {4, 1}, {3, 1}, {2, 1}, {1, 1}};
+  auto birth = verdict_of(points, {});
+  birth.doubt(0);
+  for (const int k : {2, 3, 4}) birth.settle(k);
+  EXPECT_EQ(words(birth), "undetermined 5..3; unstable 3..1; ");
+  EXPECT_EQ(birth.text(), "undetermined");
+  auto middle = verdict_of(points, {});
+  middle.doubt(2);
+  for (const int k : {0, 1, 4}) middle.settle(k);
+  EXPECT_EQ(words(middle), "unstable 5..4; undetermined 4..1; ");
+  middle.settle(3);
+  EXPECT_EQ(words(middle), "unstable 5..4; undetermined 4..2; unstable 2..1; ");
+  auto twice = verdict_of(points, {});
+  for (const int k : {1, 4}) twice.doubt(k);
+  for (const int k : {0, 2, 3}) twice.settle(k);
+  EXPECT_EQ(words(twice), "undetermined 5..3; unstable 3..2; undetermined 2..1; ");
+  auto one = verdict_of({{5, 0}}, {});
+  one.doubt(0);
+  EXPECT_EQ(words(one), "undetermined 5..5; ");
+  // Over a fold of two unstable halves the stretch is cut, and the doubt goes on.
+  auto fold = verdict_of({{1, 1}, {2, 1}, {2, 2}, {1, 2}}, {{1, 2.5, 1, 2, 0, true}});
+  fold.doubt(1);
+  for (const int k : {0, 2}) fold.settle(k);
+  EXPECT_EQ(words(fold), "undetermined 1..2.5; undetermined 2.5..2; unstable 2..1; ");
+}
+
 std::string sentence(BifurcationType type, const char* criticality, int below, int above, bool again = false,
                      BranchKind kind = {}, const char* path = "speed") {
   Bifurcation b;

@@ -164,7 +164,10 @@ std::vector<std::string> on_stability(const io::StudySummary& s, const std::vect
             later(all, 1, unit)};
   std::size_t k = 1;
   while (k < all.size() && !(grows(all[k]) && dies_out(all[k - 1]))) ++k;
-  if (k == all.size()) return {fmt::format("{}is {}.", subject, in_turn(all, 3, unit)), later(all, 3, unit)};
+  if (k == all.size())
+    return {fmt::format("{}is {}.", subject, in_turn(all, 3, unit)),
+            open.empty() ? "" : "Where it is undetermined the mesh does not tell, see the warnings.",
+            later(all, 3, unit)};
   return {as_sentence(subject + loss(s, all[k - 1], all[k], unit)), undetermined, later(all, k + 1, unit)};
 }
 

@@ -89,16 +89,27 @@ bool BranchVerdict::open_at(int bifurcation) const {
                      [&](const BranchChange& c) { return c.bifurcation == bifurcation && open_at(c); });
 }
 
-std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
+std::vector<bool> BranchVerdict::doubtful() const {
+  const int n = static_cast<int>(points_.size());
+  std::vector<bool> out(points_.size());
+  for (const int at : doubts_) {
+    int k = at;
+    while (k > 0 && !settled_.contains(k)) --k;
+    for (; k < n && (k <= at || !settled_.contains(k)); ++k) out[static_cast<std::size_t>(k)] = true;
+  }
+  return out;
+}
+
+std::vector<BranchVerdict::Stretch> BranchVerdict::cut(const std::vector<bool>& doubtful) const {
   std::vector<Stretch> out;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point& here = points_[i];
     const bool open = unresolved_.contains(static_cast<int>(i));
     if (out.empty() || out.back().stability != here.stability || (!unresolved_.empty() && out.back().of_mesh != open))
-      out.push_back({here.parameter, here.parameter, here.stability, false, open});
+      out.push_back({here.parameter, here.parameter, here.stability, doubtful[i], open});
     out.back().to = here.parameter;
-    out.back().doubtful =
-        out.back().doubtful || std::find(doubts_.begin(), doubts_.end(), static_cast<int>(i)) != doubts_.end();
+    if (out.back().doubtful != doubtful[i] && i + 1 < points_.size())
+      out.push_back({here.parameter, here.parameter, here.stability, doubtful[i], open});
     const std::vector<BranchChange> inside = between(i);
     for (std::size_t k = 0; k < inside.size(); ++k) {
       const BranchChange& c = inside[k];
@@ -112,9 +123,14 @@ std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
                                   : reaches    ? points_[i + 1].stability
                                                : StabilityClass::stable;
       const double end = last ? here.parameter : c.parameter;
-      if (c.fold || next != out.back().stability) out.push_back({c.parameter, end, next, false, open_at(c)});
+      if (c.fold || next != out.back().stability) out.push_back({c.parameter, end, next, doubtful[i], open_at(c)});
     }
   }
+  return out;
+}
+
+std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
+  std::vector<Stretch> out = cut(std::vector<bool>(points_.size()));
   std::optional<StabilityClass> first;
   bool one = true;
   for (const Stretch& s : out) {
@@ -122,7 +138,8 @@ std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
     one = one && s.stability == first.value_or(s.stability);
     first = s.stability;
   }
-  for (Stretch& s : out) s.doubtful = s.of_mesh || (s.doubtful && one);
+  if (one && !doubts_.empty()) out = cut(doubtful());
+  for (Stretch& s : out) s.doubtful = s.doubtful || s.of_mesh;
   return out;
 }
 

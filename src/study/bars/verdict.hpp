@@ -49,15 +49,18 @@ public:
   void add(const BranchChange& change) { changes_.push_back(change); }
   /// The error of the discretisation leaves open whether this point is stable. It counts where all points are of one
   /// class: beside a located change the next points are doubtful by nature.
-  void doubt(int point) { doubts_.push_back(point); }
+  void doubt(int point) { doubts_.insert(point); }
+  /// It leaves no doubt at this point: doubt about others does not reach beyond it.
+  void settle(int point) { settled_.insert(point); }
   /// The film is not resolved at this point: whatever is stable or changes beside it is undetermined.
   void unresolved(int point) { unresolved_.insert(point); }
   /// Whether a change lies beside such a point, by its place among the bifurcations of the summary.
   [[nodiscard]] bool open_at(int bifurcation) const;
 
   /// Stretches of one class in the order of the branch, each from change to change; cut at folds. `undetermined`: all
-  /// points are of one class, and one on this stretch is doubtful; or a wave of the mesh grows there. Between two
-  /// points of different class without a change a gap is left.
+  /// points are of one class, and one is doubtful, from the last settled point before it to the next one, or to the
+  /// ends of the branch; or a wave of the mesh grows there. Between two points of different class without a change a
+  /// gap is left.
   [[nodiscard]] std::vector<io::StabilityRange> ranges(const std::string& unit) const;
   /// `stable throughout`, `undamped throughout`, `unstable throughout`, `loses stability` (the branch begins stable),
   /// `unstable from its start` (and stable or undamped somewhere), `undamped, then unstable`, `stable or undamped`,
@@ -82,12 +85,15 @@ private:
   };
   [[nodiscard]] std::vector<BranchChange> between(std::size_t point) const;
   [[nodiscard]] std::vector<Stretch> stretches() const;
+  /// Of each point whether what lies behind it is doubtful; of the last one whether it is itself.
+  [[nodiscard]] std::vector<bool> doubtful() const;
+  /// The stretches, cut where `doubtful` changes as well.
+  [[nodiscard]] std::vector<Stretch> cut(const std::vector<bool>& doubtful) const;
   [[nodiscard]] bool turns_below(const BranchChange& fold) const;
   std::vector<Point> points_;
   std::vector<BranchChange> changes_;
   [[nodiscard]] bool open_at(const BranchChange& change) const;
-  std::vector<int> doubts_;
-  std::set<int> unresolved_;
+  std::set<int> doubts_, settled_, unresolved_;
 };
 
 /// The limit that is the threshold of a speed: the lowest one below which nothing is unstable. -1 if there is none.

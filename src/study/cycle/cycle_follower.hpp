@@ -179,7 +179,8 @@ private:
   /// The bar of the leading multiplier's modulus at a point of the branch.
   void judge_multiplier(const Watched& at);
   /// The same, of a branch whose points are all stable or all unstable, at the point nearest to the unit circle: unless
-  /// it is `decided` there, a bifurcation may have been missed on this mesh.
+  /// it is `decided` there, a bifurcation may have been missed on this mesh. Then at the end of the branch as well,
+  /// which bounds the stretch in doubt.
   void judge_nearest();
   /// Values of a cycle asked for with their bars, under `at.<key>.` in the summary.
   void report(const std::string& key, Vec u);

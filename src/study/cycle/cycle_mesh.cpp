@@ -126,7 +126,14 @@ void CycleFollower::watch(const solve::BranchPoint& point, const solve::Cycle& c
 void CycleFollower::judge_nearest() {
   if (!nearest_ || returned_ || !record_.one_sided()) return;
   const auto& judged = multiplier_bars_.column("point");
-  if (std::find(judged.begin(), judged.end(), nearest_->index) == judged.end()) judge_multiplier(*nearest_);
+  const auto judge = [&](const Watched& at) {
+    if (std::find(judged.begin(), judged.end(), at.index) == judged.end()) judge_multiplier(at);
+  };
+  judge(*nearest_);
+  // Doubt reaches to the next point that is decided, which the end of the branch may be.
+  const int end = static_cast<int>(record_.points()) - 1;
+  if (std::ranges::any_of(multiplier_bars_.column("decided"), [](double yes) { return !(yes > 0); }))
+    judge({end, record_.last_parameter(), record_.modulus(end), *last_});
 }
 
 void CycleFollower::judge_multiplier(const Watched& at) {

@@ -190,6 +190,11 @@ double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme&
   return largest;
 }
 
+double CycleRecord::modulus(int point) const {
+  const auto k = static_cast<std::size_t>(point) * static_cast<std::size_t>(multipliers_);
+  return std::hypot(table_.column("multipliers_real")[k], table_.column("multipliers_imag")[k]);
+}
+
 BranchVerdict CycleRecord::verdict() const {
   BranchVerdict verdict;
   for (std::size_t k = 0; k < table_.rows(); ++k) {

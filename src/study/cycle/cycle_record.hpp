@@ -53,6 +53,8 @@ public:
 
   /// Parameter of the last point, in the unit of the branch.
   [[nodiscard]] double last_parameter() const { return table_.column("parameter").back(); }
+  /// Of the leading multiplier of a point; not a number if none is known.
+  [[nodiscard]] double modulus(int point) const;
   [[nodiscard]] std::size_t points() const { return table_.rows(); }
 
   /// Calls back with place, x and y of every sample of every point, and its parameter.
