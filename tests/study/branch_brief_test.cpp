@@ -119,9 +119,14 @@ TEST(BranchBrief, TablesHaveBifurcationsAndWhatIsNotResolved) {
   auto s = branch("loses stability", {{500, 5025, "rpm", "stable"}, {5025, 6000, "rpm", "unstable"}});
   s.bifurcations = {hopf(5025, 0)};
   s.bifurcations[0].criticality = "undetermined";
-  s.bifurcations[0].criticality_by = "undetermined: the meshes differ";
+  s.bifurcations[0].criticality_by = "the film is not resolved here";
   EXPECT_EQ(brief_of_branch(s, "equilibrium").tables[0].rows[0].back().text, "") << "the first sentence says it";
   s.bifurcations.push_back(hopf(5500, 2));
+  s.bifurcations.push_back(s.bifurcations[0]);
+  s.bifurcations[2].sentence = "above this speed whirl sets in. It is not known whether it grows from nothing";
+  s.bifurcations[2].criticality_by = "first Lyapunov coefficient has an error bar that contains zero";
+  s.bifurcations[2].more["criticality_coefficient"] = -5.4;
+  s.bifurcations[2].more["criticality_uncertainty"] = 12.3;
   s.suspected = {{5100, 5200, "rpm", "two eigenvalues cross together"}};
   io::Brief brief = brief_of_branch(s, "equilibrium");
   io::typeset(brief);
@@ -129,7 +134,17 @@ TEST(BranchBrief, TablesHaveBifurcationsAndWhatIsNotResolved) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->columns[1].name, "speed");
   EXPECT_EQ(found->rows[0][1].text, "5025 +- 12");
-  EXPECT_EQ(found->rows[0].back().text, "above this speed the rotor jumps to large whirl (the meshes differ)");
+  EXPECT_EQ(found->rows[0].back().text,
+            "above this speed the rotor jumps to large whirl. The film is not resolved here.");
+  // The number stands in the table, the sentence says what it leaves open and what would decide it.
+  EXPECT_EQ(found->rows[2].back().text,
+            "above this speed whirl sets in. It is not known whether it grows from nothing. The sign of its "
+            "coefficient decides, and the error bar contains zero. A finer mesh shortens the bar.");
+  const auto coefficient = std::ranges::find(found->columns, "coefficient", &io::BriefColumn::name);
+  ASSERT_NE(coefficient, found->columns.end());
+  const auto at = static_cast<std::size_t>(coefficient - found->columns.begin());
+  EXPECT_EQ(found->rows[2][at].text, "-5 +- 12");
+  EXPECT_EQ(found->rows[1][at].text, "");
   ASSERT_TRUE(table(brief, "Along the branch"));
   EXPECT_EQ(table(brief, "Along the branch")->rows.size(), 2U);
   ASSERT_TRUE(table(brief, "Not resolved: bifurcations may lie here"));

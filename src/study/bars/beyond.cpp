@@ -75,7 +75,7 @@ std::string of_loss(const io::Bifurcation& b, const BranchKind& kind) {
   if (b.criticality == "subcritical")
     return fmt::format("above {} the {} jumps to {}; just below it a disturbance can trigger the same {}", at,
                        kind.shaft ? "rotor" : "system", large(b.born), last_word(b.born));
-  return fmt::format("above {} {} sets in; whether it grows from nothing or the {} jumps is undetermined", at,
+  return fmt::format("above {} {} sets in. It is not known whether it grows from nothing or the {} jumps to it", at,
                      with_article(b.born), kind.shaft ? "rotor" : "system");
 }
 
@@ -87,7 +87,7 @@ std::string of_gain(const io::Bifurcation& b, const BranchKind& kind, bool again
   if (b.criticality == "supercritical") return fmt::format("{}: {} shrinks to nothing there", where, born);
   if (b.criticality == "subcritical")
     return fmt::format("{}: just above it a disturbance can still trigger {}", where, large(b.born));
-  return fmt::format("{}: {} ends there, gradually or by a jump is undetermined", where, born);
+  return fmt::format("{}: {} ends there. It is not known whether it does so gradually or by a jump", where, born);
 }
 
 }  // namespace

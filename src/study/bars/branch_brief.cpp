@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "study/bars/beyond.hpp"
+#include "study/bars/error_bar.hpp"
 #include "study/bifurcation.hpp"
 #include "study/brief.hpp"
 #include "whirl/deck/units.hpp"
@@ -55,15 +56,21 @@ bool is_border(const io::Bifurcation& b) {
   return b.criticality == "supercritical" || b.criticality == "subcritical";
 }
 
-// The sentence of the bifurcation, with what has to be known of it.
+// The number whose sign is the criticality, where its bar leaves the sign open.
+io::Quantity open_coefficient(const io::Bifurcation& b) {
+  const double value = more_of(b, "criticality_coefficient"), bar = more_of(b, "criticality_uncertainty");
+  if (b.criticality != "undetermined" || !std::isfinite(bar) || decided(value, bar)) return {};
+  return with_bar(value, bar, "1");
+}
+
+// The sentence of the bifurcation, with what has to be known of it, and what is not known.
 std::string meaning(const io::Bifurcation& b) {
-  constexpr std::string_view known = "undetermined: ";
   std::string words = b.sentence;
   if (words.empty() && more_of(b, "others_unstable") > 0) words = "another mode is unstable already";
   std::string reason = b.criticality_by;
-  if (reason.starts_with(known)) reason.erase(0, known.size());
-  if (b.criticality == "undetermined" && !reason.empty())
-    words += (words.empty() ? "" : " ") + fmt::format("({})", reason);
+  if (std::isfinite(open_coefficient(b).value))
+    reason = "the sign of its coefficient decides, and the error bar contains zero. A finer mesh shortens the bar";
+  if (b.criticality == "undetermined" && !reason.empty()) words += words.empty() ? reason : ". " + as_sentence(reason);
   return words;
 }
 
@@ -271,6 +278,7 @@ io::BriefTable table_of_bifurcations(const io::StudySummary& s) {
        {"frequency", "Hz"},
        {"of the speed", "1"},
        {"criticality"},
+       {"coefficient"},
        {"error of the shaft's reduction", first.unit},
        {"what it means"}},
       {},
@@ -279,7 +287,7 @@ io::BriefTable table_of_bifurcations(const io::StudySummary& s) {
     const bool side =
         (b.type == Type::fold || b.type == Type::cyclic_fold) && (b.criticality == "above" || b.criticality == "below");
     table.rows.push_back({words_of(b.type), with_bar(b.value, b.uncertainty, b.unit), frequency_of(b), ratio_of(b),
-                          side ? "branch lies " + b.criticality : b.criticality,
+                          side ? "branch lies " + b.criticality : b.criticality, open_coefficient(b),
                           io::Quantity{more_of(b, "reduction_error"), b.unit}, meaning(b)});
   }
   return table;

@@ -78,7 +78,7 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& 
   b.more["branch_curvature_uncertainty"] = error;
   if (!asked) {
     put_criticality(b, kappa, error, "supercritical", "subcritical",
-                    "parameter at three small amplitudes of the branch born here, per clearance^2");
+                    "parameter at three small amplitudes of the branch born here");
   } else if (b.criticality != "undetermined" && b.criticality != verdict) {
     b.criticality_by = fmt::format("{}, but the branch born here says {}", b.criticality_by, verdict);
     b.criticality = "undetermined";

@@ -108,10 +108,9 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
     b.more[fmt::format("lyapunov_{}", name)] = b.more[fmt::format("criticality_{}", name)];
   // Cycles that live where the equilibrium is unstable are supercritical.
   const double sign = at.found.sensitivity > 0 ? -1 : 1;
-  put_criticality(b, sign * curvature, smaller + doubt + of_meshes, "supercritical", "subcritical",
-                  fmt::format("cycles at amplitudes {:.3g}, {:.3g}, {:.3g} of a clearance, change of the parameter per "
-                              "clearance^2",
-                              found[2], found[3], found[4]));
+  put_criticality(
+      b, sign * curvature, smaller + doubt + of_meshes, "supercritical", "subcritical",
+      fmt::format("cycles at amplitudes {:.3g}, {:.3g}, {:.3g} of a clearance", found[2], found[3], found[4]));
   b.criticality_by += "; " + before;
 }
 
@@ -144,9 +143,9 @@ void put_criticality(io::Bifurcation& b, double value, double uncertainty, const
   if (!std::isfinite(value)) {
     b.criticality_by = by + " could not be computed";
   } else if (!std::isfinite(uncertainty)) {
-    b.criticality_by = fmt::format("{} is {:.3g}, without an error bar", by, value);
+    b.criticality_by = by + " is known without an error bar";
   } else if (!decided(value, uncertainty)) {
-    b.criticality_by = fmt::format("{} may be zero: {}", by, io::reading(value, uncertainty));
+    b.criticality_by = by + " has an error bar that contains zero";
   } else {
     b.criticality = value < 0 ? negative : positive;
     b.criticality_by = by;
