@@ -71,6 +71,7 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   continuation_.min_step = step ? step->min.value / second_scale_ : 1e-6;
   continuation_.max_step = step ? step->max.value / second_scale_ : 1.0 / 30;
   continuation_.max_points = options.max_points;
+  continuation_.picture_tolerance = options.picture_tolerance;
   continuation_.kind = kind_of(options.second.continuation);
   continuation_.location_tolerance = 1e-7;
 }
@@ -225,6 +226,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     }
     return values;
   };
+  callbacks.drawn = [&](Vec whole) { return std::vector<std::vector<double>>{{problem_->first_parameter(whole)}}; };
   callbacks.on_zero = [&](const solve::LocatedZero& zero, Vec whole) {
     if (!zero.located) return;
     const std::string type = names[zero.monitor];
@@ -274,7 +276,8 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
       ended_ = inner(0) * inner_sign_ < 0;
     }
     if (seed_.event == solve::Event::neimark_sacker) ended_ = std::abs(inner(0)) > 1;
-    problem_->update();
+    // A step goes on from its end, not from the points within it.
+    if (!point.between) problem_->update();
     context_.results.progress(fmt::format("{}: point {}, {} {:.6g} {}, {} {:.6g} {}, step {:.3g}, {:.1f} s",
                                           context_.results.summary().name, point.index + 1, first_.path,
                                           deck::from_si(last_.first, first_range_.unit), first_range_.unit,
@@ -357,6 +360,7 @@ StudyResult LocusFollower::run() {
   group.set("parameter_unit", first_range_.unit);
   group.set("second", options_.second.path);
   group.set("second_unit", range.unit);
+  group.set("picture_tolerance", options_.picture_tolerance);
   group.set("start", static_cast<int>(back.size()));
   const BranchKind kind{of_cycles_.has_value(), of_cycles_ && of_cycles_->origin == CycleBranchOptions::Origin::hopf,
                         of_cycles_ ? of_cycles_->period : 1, true};

@@ -15,6 +15,7 @@ struct LocusOptions {
   Parameter second;                        ///< the second parameter; the branch's own is the first
   std::optional<deck::Range> first_range;  ///< where the curve may go in the first one; the branch's range if absent
   int max_points = 500;
+  double picture_tolerance = default_picture_tolerance;
 };
 void describe(deck::Description<LocusOptions>& d);
 

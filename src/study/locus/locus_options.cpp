@@ -27,7 +27,9 @@ void describe(deck::Description<LocusOptions>& d) {
   d.embed(&O::second);
   d.add("first_range", &O::first_range, "*", deck::any,
         "values of the branch's own parameter at which the curve ends; the range of the branch if not given");
-  d.add("max_points", &O::max_points, deck::positive, "points in each direction after which the curve ends");
+  d.add("max_points", &O::max_points, deck::positive,
+        "points in each direction after which the curve ends, without those that `picture_tolerance` adds");
+  d.add("picture_tolerance", &O::picture_tolerance, deck::in(0, 1), text_of_picture_tolerance);
 }
 
 void Locus::validate(const system::Machine& machine, const deck::Report& report) const {
