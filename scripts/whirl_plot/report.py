@@ -51,6 +51,7 @@ CAPTIONS = {
     "map-locus": "Where the journal rests under a load.", "map-stiffness": "Stiffness over the load.", "map-damping": "Damping over the load.",
     "map-stability": "Where a rigid rotor loses stability.", "map-pressure": "Pressure and thickness around the bearing.",
     "history": "The motion over time.", "harmonics": "Harmonics of the self-excited vibration.", "critical-speeds": "Undamped critical speeds over the stiffness of the supports.",
+    "columns-shaft": "Moment, shear force and stress along the shaft.",
     "convergence": "Natural frequencies over the number of elements.", "shifts": "Frequencies of other elements against those of the deck.",
     "conditions": "Condition of the eigenvalues.", "reduction-errors": "Errors of reduced shafts.", "reduction-orbits": "Orbits of whole and reduced shafts.",
     "reduction-maps": "Entries of the reduced matrices.", "whirl-map": "Sense of whirl of each mode along the shaft, over the speed.",
@@ -68,6 +69,9 @@ CAPTIONS = {
 BY_PLACE = {"film-": "Film of bearing {}: pressure and thickness, unwrapped.", "coefficients-": "Coefficients of the film: {}.", "enforced-": "Coefficients by enforced motion: {}.",
             "response-": "Transfer functions to {} (amplitude and phase).", "shapes-3d-": "Mode shapes in space: {}.", "shapes-": "Mode shapes along the shaft: {}.",
             "orbits-": "Orbits: {}.", "multipliers-": "Floquet multipliers: {}.", "columns-": "Columns of the table of the {}."}
+# Where x and y are states of another system than a rotor.
+OF_STATES = {"cycles-vertical": "Largest and smallest y over a cycle.", "cycles-horizontal": "Largest and smallest x over a cycle.", "orbits": "Orbits.",
+             "bifurcations": "All branches together, y.", "equilibria": "Equilibria, and the least stable eigenvalue."}
 CONVENTIONS = [
     ("Axes", "x to the right, y up, z along the shaft; nodes are numbered from 1 along z."),
     ("Rotation", "from x to y, counter-clockwise with x to the right. Forward whirl turns with the shaft."),
@@ -116,8 +120,8 @@ def anchor(name):
 def caption(what, subject=None):
     """What a picture shows, by the end of its name, `shapes-3d-1500`: its kind, and a place or a speed."""
     kind = re.sub(r"-?\d+$", "", what)
-    if what.startswith("cycles-") and not subject.in_space:  # x and y are states of another system than a rotor
-        return f"Largest and smallest {'y' if what == 'cycles-vertical' else 'x'} over a cycle."
+    if what in OF_STATES and not all(getattr(s, "in_space", True) for s in getattr(subject, "studies", [subject])):
+        return OF_STATES[what]
     if what in CAPTIONS or kind in CAPTIONS:
         words, number = CAPTIONS.get(what) or CAPTIONS[kind], what.removeprefix(kind).lstrip("-")
         at = kind.startswith("shapes") and what not in CAPTIONS and number
@@ -126,7 +130,8 @@ def caption(what, subject=None):
         return f"{words.removesuffix('.')}, at {number} {subject.attribute('speed_unit', 'rad/s')}." if at and subject is not None else words
     for head, told in BY_PLACE.items():
         if what.startswith(head):
-            return told.format(re.sub("[-._]", " ", what.removeprefix(head)))
+            which = re.sub("[-._]", " ", what.removeprefix(head))
+            return told.format(re.sub(r"^(translation|tilt) (\w+)$", r"\1, over the \2", which))
     if getattr(subject, "kind", "") == "sweep":
         return f"All variants in one picture: {re.sub('[-._]', ' ', what)}."
     return f"{kind.replace('-', ' ').capitalize()}."
