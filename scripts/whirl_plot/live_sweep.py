@@ -51,7 +51,7 @@ def coefficients(study, what):
     found = list(sweeps.coefficients_of(study, what))
     lines = [line(at, values, name, 0, option, colour, u=unit) for option, (_, at, entries, unit) in enumerate(found) for colour, (name, values) in zip(COLOURS, entries.items())]
     units = ", ".join(dict.fromkeys(unit for *_, unit in found))
-    return {"choose": {"name": "at", "of": [head for head, *_ in found]}, "lines": lines, "panels": [{"x": parted(sweeps.axis_of(study)[0]), "y": (what, units), "by": "x"}]} if lines else None
+    return {"choose": {"name": "at", "of": [sweeps.place_of(study, head) for head, *_ in found]}, "lines": lines, "panels": [{"x": parted(sweeps.axis_of(study)[0]), "y": (what, units), "by": "x"}]} if lines else None
 
 
 def branches(study, what):

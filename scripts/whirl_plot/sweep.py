@@ -268,7 +268,7 @@ def draw_coefficients(study):
             for colour, values in zip(COLOURS, entries.values()):
                 known = np.isfinite(values)
                 axis.plot(*smooth(at[known], values[known]), color=colour, linewidth=1.4)
-            axis.set_title(place_of(bearing))
+            axis.set_title(place_of(study, bearing))
             axis.set_xlabel(axis_of(study)[0])
             axis.set_ylabel(f"{words} [{unit}]")
             axis.axhline(0, color=INK, linewidth=0.6)
@@ -277,10 +277,13 @@ def draw_coefficients(study):
     return files
 
 
-def place_of(name):
-    """`coefficients.speed.2000.ratio.0.5` as `coefficients: speed 2000, \u03c9/\u03a9 = 0.5`; a bearing as it is."""
+def place_of(study, name):
+    """`coefficients.speed.2000.ratio.0.5` as `coefficients: 2000 rad/s, \u03c9/\u03a9 = 0.5`; a bearing as it is."""
     found = re.fullmatch(r"(.*)\.speed\.([0-9.]+)\.ratio\.([0-9.]+)", name)
-    return f"{found[1]}: speed {found[2]}, \u03c9/\u03a9 = {found[3]}" if found else name
+    if not found:
+        return name
+    unit = next((c["unit"] for c in study.summary["columns"] if c["name"] == f"{found[1]}.speed.{found[2]}.speed"), "")
+    return f"{found[1]}: {found[2]} {unit}, \u03c9/\u03a9 = {found[3]}"
 
 
 def smooth(at, values):
