@@ -5,7 +5,7 @@ from .bifurcation import Followed, damped, distinct, without_twins, words_of_das
 from .bore import outline
 from .live import line, rounded, service_place
 from .orbits import picked, shades_of, stability
-from .style import BAD, GREY, INK, MARKS, X, Y
+from .style import BAD, GREY, INK, MARKS, X, Y, span_of
 from .units import with_bar
 
 SHAPES = {"o": "circle", "s": "rect", "D": "rectRot", "^": "triangle", "P": "cross", "x": "crossRot"}
@@ -16,7 +16,7 @@ SCALE = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [25
 
 def axis_of(study):
     unit = study.attribute("parameter_unit", "")
-    return study.attribute("parameter", "speed" if unit in ("rpm", "rad/s", "Hz") else "parameter").replace("_", " "), "" if unit == "1" else unit
+    return study.attribute("parameter", "speed" if unit in ("rpm", "rad/s", "Hz") else "parameter").split(".")[-1].replace("_", " "), "" if unit == "1" else unit
 
 
 def curve(branch, values, name, option, colour, scale, panel=0, more=()):
@@ -97,6 +97,13 @@ def chart(study, lines, panels, names, **more):
     return {"panels": panels, "lines": lines, "styles": styles, "keys": styles if both else [], "choose": {"name": "at", "of": names}, **more}
 
 
+def over_parameter(study, parameter):
+    """The axis of a branch. One that ends where it begins has an axis on which numbers differ."""
+    ends = float(np.min(parameter)), float(np.max(parameter))
+    wide = span_of(*ends)
+    return {"x": axis_of(study), "places": services(study), **({"span": rounded(wide)} if wide != ends else {})}
+
+
 def services(study):
     return service_place(study, study.attribute("parameter_unit", "")) if study.attribute("parameter", "") == "speed" else []
 
@@ -110,13 +117,13 @@ def equilibria(study, _):
     scale, unit = study.measure(np.concatenate([x, y]))
     lines = []
     for option, b in enumerate(shown):
-        lines += curve(branch, y[:, b], "y, vertical", option, Y, scale) + curve(branch, x[:, b], "x, horizontal", option, X, scale)
+        lines += curve(branch, y[:, b], "y" + ", vertical" * study.in_space, option, Y, scale) + curve(branch, x[:, b], "x" + ", horizontal" * study.in_space, option, X, scale)
         lines += marks(branch, [y[:, b], x[:, b]], option, scale)
-    panels = [{"x": axis_of(study), "y": ("position", "" if unit == "1" else unit), "places": services(study)}]
+    panels = [{**over_parameter(study, branch.parameter), "y": ("position", "" if unit == "1" else unit)}]
     if growth is not None:
         ends = branch.parameter[[np.argmin(branch.parameter), np.argmax(branch.parameter)]]
         lines += [line(ends, [0, 0], None, 1, colour=BAD, quiet=True, w=1)] + curve(branch, growth, "least stable eigenvalue", None, INK, 1.0, 1, frequency_of(study))
-        panels.append({"x": axis_of(study), "y": ("real part", "1/s"), "height": 240, "places": services(study)})
+        panels.append({**over_parameter(study, branch.parameter), "y": ("real part", "1/s"), "height": 240})
     return chart(study, lines, panels, [names[b] for b in shown])
 
 
@@ -152,7 +159,7 @@ def cycles(study, direction):
             lines += curve(branch, values[:, b], study.name, option, study.colour, scale, more=facts)
         lines += marks(branch, [high[:, b], low[:, b]], option, scale)
     beside = orbit_lines(branch, shown, scale, unit, study.name)
-    panels = [{"x": axis_of(study), "y": (f"{direction}, largest and smallest", "" if unit == "1" else unit), "places": services(study)}]
+    panels = [{**over_parameter(study, branch.parameter), "y": (f"{direction}, largest and smallest", "" if unit == "1" else unit)}]
     return chart(study, lines + beside, panels + [orbit_panel(unit)] * bool(beside), [names[b] for b in shown], side=bool(beside))
 
 
@@ -176,7 +183,7 @@ def nodes(study, _):
         for key, name, colour in (("amplitude", "largest distance from the mean", INK), ("x", "x, horizontal", X), ("y", "y, vertical", Y)):
             lines += curve(branch, tables[key][:, k], name, k, colour, scale, more=facts_of(study))
         lines += marks(branch, [tables["amplitude"][:, k]], k, scale)
-    return chart(study, lines, [{"x": axis_of(study), "y": ("amplitude, 0-peak", "" if unit == "1" else unit), "low": 0, "places": services(study)}], [f"node {n}, shaft" for n in every])
+    return chart(study, lines, [{**over_parameter(study, branch.parameter), "y": ("amplitude, 0-peak", "" if unit == "1" else unit), "low": 0}], [f"node {n}, shaft" for n in every])
 
 
 def together(results, _):

@@ -4,7 +4,7 @@ import numpy as np
 from . import locus
 from .critical import LINES, TO_RPM
 from .live import line, rounded
-from .live_branches import axis_of
+from .live_branches import axis_of, over_parameter
 from .multipliers import both_of_pairs, joined
 from .style import BAD, COLOURS, GREY, INK, MARKS
 from .units import with_bar
@@ -80,6 +80,6 @@ def multipliers(study, _):
     kinds, where = study.get("bifurcations/type"), np.atleast_1d(study.get("bifurcations/parameter", np.array([])))
     places = [(round(float(v), 6), MARKS.get(kind, (kind,))[0]) for kind, v in zip(kinds, where)] if kinds is not None else []
     top = 1.08 * max(1.0, min(FARTHEST, np.nanmax(np.abs(values))))
-    panels = [{"x": (name, unit), "y": ("modulus", ""), "limits": [0, round(top, 3)], "places": places},
+    panels = [{**over_parameter(study, parameter), "y": ("modulus", ""), "limits": [0, round(top, 3)], "places": places},
               {"x": ("real part", ""), "y": ("imaginary part", ""), "equal": True, "follows": True}]
     return {"panels": panels, "lines": lines, "styles": [{"t": ""}, {"c": BAD, "t": "unstable"}], "keys": [{"c": GREY, "t": "stable"}, {"c": BAD, "t": "beyond one: unstable"}], "side": True}
