@@ -42,30 +42,38 @@ def draw_points(axis, px, py, unit):
     finish(axis, unit=unit)
 
 
-def draw_spectrum(axis, order, x, y, unit, in_space, top=6.0):
+def frequencies_of(study):
+    return "frequency / running speed" if study.in_space else f"frequency, cycles in {study.turns.replace('periods', 'a period')}"
+
+
+def draw_spectrum(axis, order, x, y, unit, study, top=6.0):
     shown = order <= top
     floor = max(1e-9, 1e-8 * max(x[shown].max(), y[shown].max()))
-    for values, colour, label in ((y, Y, f"y{', vertical' * in_space}"), (x, X, f"x{', horizontal' * in_space}")):
+    for values, colour, label in ((y, Y, f"y{', vertical' * study.in_space}"), (x, X, f"x{', horizontal' * study.in_space}")):
         axis.semilogy(order[shown], np.maximum(values[shown], floor), color=colour, linewidth=0.8, label=label)
     axis.set_xlim(0, top)
-    axis.set_xlabel("frequency / running speed")
+    axis.set_xlabel(frequencies_of(study))
     axis.set_ylabel(f"amplitude, 0-peak [{unit}]")
     axis.legend(loc="upper right")
+
+
+def exponents_of(study):
+    return f"Lyapunov exponents per {'revolution' if study.in_space else 'period'}"
 
 
 def exponent_in_words(value, bar):
     return with_bar(value, bar) if np.isfinite(bar) else f"{digits(value, 2)}, too short for a bar"
 
 
-def draw_exponents(axis, running, speed, value, uncertainty):
+def draw_exponents(axis, study, running, speed, value, uncertainty):
     turns = np.arange(1, len(running) + 1)
     per_turn = 2 * np.pi / speed
     for k in range(running.shape[1]):
         axis.plot(turns, running[:, k] * per_turn, color=SHADES[k % len(SHADES)], linewidth=1.2,
                   label=exponent_in_words(value[k] * per_turn, uncertainty[k] * per_turn))
     axis.axhline(0, color=GREY, linewidth=0.8)
-    axis.set_xlabel("revolutions")
-    axis.set_ylabel("Lyapunov exponents per revolution")
+    axis.set_xlabel(study.turns)
+    axis.set_ylabel(exponents_of(study))
     axis.legend(loc="best")
 
 
@@ -97,17 +105,17 @@ def draw(study):
         row[0].set_title("orbit" if len(rows) == 1 else f"orbit, {names[b]}")
         draw_points(row[1], px[:, b], py[:, b], unit)
         row[1].set_title(where)
-        draw_spectrum(row[2], order, sx[:, b], sy[:, b], unit, study.in_space)
+        draw_spectrum(row[2], order, sx[:, b], sy[:, b], unit, study)
         row[2].set_title("spectrum")
         if exponents and b == rows[0]:
-            draw_exponents(row[3], study.get("exponents/running"), study.attribute("speed"),
+            draw_exponents(row[3], study, study.get("exponents/running"), study.attribute("speed"),
                            np.atleast_1d(study.get("exponents/value")), np.atleast_1d(study.get("exponents/uncertainty")))
             row[3].set_title(study.attribute("motion", "").replace("_", " "), color=INK)
         elif exponents:
             row[3].set_visible(False)
     turns = int(round(x.shape[0] / study.attribute("samples", 1)))
     mark = "shaft angle 0" if cut == "poincare" else str(study.group["section"].attrs["plane"])
-    return save(figure, study, "motion", f"{in_print(study.attribute('evidence', ''))}; last {turns} revolutions, black: {mark}" + f"; {ROTATION}" * study.in_space + also(later))
+    return save(figure, study, "motion", f"{in_print(study.attribute('evidence', ''))}; last {turns} {study.turns}, black: {mark}" + f"; {ROTATION}" * study.in_space + also(later))
 
 
 def same(one, other):
@@ -160,7 +168,7 @@ def draw_history(study):
             axis.set_ylabel(letter if unit == "1" else f"{letter} [{unit}]")
             axis.margins(x=0.005)
         pair[0].set_title(names[b])
-    axes[-1, 0].set_xlabel("periods before the end" if study.has("places/name") else "revolutions before the end")
+    axes[-1, 0].set_xlabel(f"{study.turns} before the end")
     note = "" if study.has("section/x") else "black: once per revolution, at shaft angle 0"
     return save(figure, study, "history", (note + also(later)).removeprefix("; "))
 

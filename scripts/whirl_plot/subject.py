@@ -1,5 +1,6 @@
 """What a picture is of: a study or a whole run, with the names of its files and the units in which it reads best."""
 import contextlib
+import math
 import pathlib
 import re
 import sys
@@ -41,6 +42,11 @@ class Subject(whirl.Study):
     def shown(self):
         """What the positions of branches and motions are."""
         return str(self.group["places/name"].attrs["description"]) if not self.in_space else "journal relative to the bearing centre"
+
+    @property
+    def turns(self):
+        """The unit of time of motions. Nothing turns in another system than a rotor; its speed is the frequency of a force or a scale."""
+        return "revolutions" if self.in_space else f"periods of {2 * math.pi / self.attribute('speed', 1):.4g} s"
 
     @property
     def micro(self):

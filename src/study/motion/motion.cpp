@@ -286,6 +286,12 @@ io::Quantity mean_of(const io::Group& orbit, const std::string& axis, std::size_
   return {sum / static_cast<double>(n), unit};
 }
 
+// The unit of time of a motion. Nothing turns in another system than a rotor, which shows numbers as x and y.
+std::string turn_of(const Values& v) {
+  const std::vector<std::string> places = v.between("peak_to_peak.", ".x");
+  return !places.empty() && v["peak_to_peak." + places.front() + ".x"].unit == "1" ? "period" : "revolution";
+}
+
 io::BriefTable table_of_places(const Values& v, const io::Group& group, int samples) {
   const std::vector<std::string> places = v.between("peak_to_peak.", ".x");
   // At rest there are no tones.
@@ -298,10 +304,10 @@ io::BriefTable table_of_places(const Values& v, const io::Group& group, int samp
                         {"mean x", length},
                         {"mean y", length},
                         {"strongest tone in y", "Hz"},
-                        {"per revolution", "1"},
-                        {"its amplitude", length}},
+                        {"tone per " + turn_of(v), "1"},
+                        {"amplitude of the tone", length}},
                        {},
-                       "mean: over the last revolution"};
+                       "mean: over the last " + turn_of(v) + (length == "1" ? ", 2 pi over the speed" : "")};
   const bool known = group.has_group("orbit") && group.group("orbit").has_dataset("x") &&
                      group.group("orbit").reals("x").size() >= places.size();
   const auto mean = [&](const char* axis) {
@@ -319,7 +325,7 @@ io::BriefTable table_of_places(const Values& v, const io::Group& group, int samp
 
 io::BriefTable table_of_exponents(const Values& v) {
   io::BriefTable table{"Lyapunov exponents",
-                       {{"exponent"}, {"value", "1/s"}, {"per revolution", "1"}},
+                       {{"exponent"}, {"value", "1/s"}, {"per " + turn_of(v), "1"}},
                        {},
                        "positive: neighbouring motions part; bar: the interval that holds it with 99 % probability"};
   for (int k = 1; v.get(fmt::format("lyapunov.{}", k)); ++k) {
