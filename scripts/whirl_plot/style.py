@@ -164,8 +164,9 @@ def save(figure, study, what, note="", handles=(), columns=6, of=""):
     below = lowest + 0.19 * bool(lines) + 0.15 * max(0, len(lines) - 1)
     head, foot = 0.58, 0.10 + below + 0.215 * rows  # inches
     figure.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (head + foot) / height))
-    title = textwrap.shorten(study.run_title, max(40, int(9.6 * figure.get_figwidth())), placeholder=" ...")
-    figure.text(0.01, 1 - 0.2 / height, title, va="center", fontsize=11.5, fontweight="bold", color=INK)
+    room, size, least = max(40, int(9.6 * figure.get_figwidth())), 11.5, 8.5  # a long title is set smaller before it is cut
+    title = textwrap.shorten(study.run_title, int(room * size / least), placeholder=" ...")
+    figure.text(0.01, 1 - 0.2 / height, title, va="center", fontsize=min(size, size * room / max(1, len(title))), fontweight="bold", color=INK)
     subject = f"{study.name}: {of}" if of else study.name
     subtitle = subject if study.status in ("", "completed") else f"{subject} \u2014 {in_print(study.status)}"
     figure.text(0.01, 1 - 0.42 / height, textwrap.shorten(subtitle, max(40, int(14 * figure.get_figwidth())), placeholder=" ..."), va="center", fontsize=9.5, color=GREY)
