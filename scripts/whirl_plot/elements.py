@@ -60,9 +60,9 @@ def draw_shifts(study):
     for colour, (name, table) in zip(COLOURS, kinds[1:]):
         shift = 100 * table["shift"][()]
         left.plot(np.arange(1, len(shift) + 1), shift, "o-", color=colour, markersize=4)
-        right.plot(base, shift, "o-", color=colour, markersize=4)
+        right.plot(base / (2 * np.pi), shift, "o-", color=colour, markersize=4)
     left.set_xlabel("mode")
-    right.set_xlabel(f"frequency of {kinds[0][0]} [rad/s]")
+    right.set_xlabel(f"frequency of {kinds[0][0]} [Hz]")
     left.set_ylabel(f"shift from {kinds[0][0]} [%]")
     handles = [Line2D([], [], color=c, marker="o", markersize=4, label=name) for c, (name, _) in zip(COLOURS, kinds[1:])]
     return save(figure, study, "shifts", f"on the last mesh; speed {study.attribute('speed', 0):.6g} rad/s", handles)

@@ -172,7 +172,7 @@ def draw_shaft(results, deck, segments):
         handles.append(Line2D([], [], color=GREY, linestyle=":", label="coupling"))
     if planes:
         handles.append(Line2D([], [], color=BAD, marker="v", linestyle="none", label="plane of unbalance, with its node"))
-    note = f"{len(segments)} elements, nodes 1 to {len(z)} from left to right"
+    note = f"{len(segments)} element{'s' * (len(segments) > 1)}, nodes 1 to {len(z)} from left to right"
     if any(not known for *_, known, _ in discs):
         note += "; discs given by mass are drawn by its size, not to scale"
     if stretch > 1.05:

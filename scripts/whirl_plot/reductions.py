@@ -65,7 +65,7 @@ def draw_orbits(study):
             axis.plot(scale * rx[column, row], scale * ry[column, row], color=COLOURS[column % len(COLOURS)], linewidth=0.9)
             axis.set_aspect("equal")
             axis.xaxis.set_major_locator(MaxNLocator(3))
-            axis.set_title(f"{broken(method)}\n{kept:.0f} freedoms, error {100 * errors[column, row, 0]:.2g} %", fontsize=8.5)
+            axis.set_title(f"{broken(method)}\n{kept:.0f} freedoms, error {100 * errors[column, row, 0]:.2g} %", fontsize=7.5)
     for axis in axes[-1]:
         axis.set_xlabel(f"x [{unit}]")
     for axis in axes[:, 0]:

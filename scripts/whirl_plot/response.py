@@ -4,7 +4,7 @@ import numpy as np
 from .canvas import Line2D, plt
 from .margins import operating_in
 from .style import BAD, DASHED, GREY, INK, X, Y, length_unit, mark_service, runs, save, span_of, speed_axis, ticks_at
-from .units import person
+from .units import digits, person
 
 NOTE = ("linear response, amplitudes 0-peak; lag behind the shaft angle: x = |X| cos(angle \u2212 lag), the heavy side points along x "
         "at angle 0 and phase 0")
@@ -81,7 +81,7 @@ def draw_place(study, amplitude_axis, phase_axis, x, data, k, scale, unit, speed
         top, p = max(known, key=lambda entry: (is_answer(entry[1]), entry[0]))
         factor = number(p, "amplification_factor")
         # Above the axes it covers nothing.
-        title += f"\n{person(top, 'm', 3)} at {number(p, 'speed'):.0f} {speed_unit}" + (f", AF {factor:.1f}" if factor is not None else "")
+        title += f"\n{person(top, 'm', 3)} at {number(p, 'speed'):.0f} {speed_unit}" + (f", AF {digits(factor, 3)}" if factor is not None else "")
         if not is_answer(p):
             title += ", unstable" if p.get("stability") == "unstable" else ", no answer" if any(str(n).startswith("no answer") for n in p.get("notes", [])) else ", undetermined"
     highest = np.nanmax(major) if np.isfinite(major).any() else 0
