@@ -191,8 +191,9 @@ def has_liner(study, b):
     return str(((bearing or {}).get("film") or {}).get("type", "")).startswith("compliant")
 
 
-def mark_walls(axis, study, b, scale, direction="y"):
-    """Lines where the wall of the bore stands above and below the middle (y) or beside it (x), if a branch comes near."""
+def mark_walls(axis, study, b, scale, direction="y", of=""):
+    """Lines where the wall of the bore stands above and below the middle (y) or beside it (x), if a branch comes near; `of`: of which
+    curve where both directions share the axis."""
     if not study.has("bearings/clearance") or study.has("places/name"):
         return
     angles = np.array([0.5, -0.5]) * np.pi if direction == "y" else np.array([0.0, 1.0]) * np.pi
@@ -203,7 +204,7 @@ def mark_walls(axis, study, b, scale, direction="y"):
             below, above = axis.get_ylim()
             axis.set_ylim(min(below, at - 0.02 * (high - low)), max(above, at + 0.02 * (high - low)))
             axis.axhline(at, color=GREY, linewidth=0.9, zorder=0.6)
-            axis.annotate("undeformed wall" if has_liner(study, b) else "wall", (1, at), xycoords=axis.get_yaxis_transform(), xytext=(-2, 1), textcoords="offset points", ha="right", va="bottom", fontsize=6.5,
+            axis.annotate(("undeformed wall" if has_liner(study, b) else "wall") + of, (1, at), xycoords=axis.get_yaxis_transform(), xytext=(-2, 1), textcoords="offset points", ha="right", va="bottom", fontsize=6.5,
                           color=GREY)
 
 
@@ -248,7 +249,7 @@ def draw_equilibria(study):
         branch.mark(axis, [y[:, b], x[:, b]], scale)
         finish(axis, names[b], f"position [{unit}]", parameter_label(study))
         least_span(axis, scale * max(np.abs(x[:, b]).max(), np.abs(y[:, b]).max()))
-        mark_walls(axis, study, b, scale)
+        mark_walls(axis, study, b, scale, of=" for y")
         over_speed(axis, study)
     if growth is not None:
         axis = axes[-1]
