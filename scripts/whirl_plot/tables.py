@@ -51,6 +51,8 @@ def inputs(results):
         g, f, p = b.get("geometry") or {}, b.get("film") or {}, b.get("pedestal") or {}
         film = ", ".join(("cavitation " if k == "cavitation" else "") + str(f[k]).replace("_", " ") for k in ("type", "cavitation", "turbulence") if k in f)
         film += ", " + " \u00d7 ".join(map(str, f["cells"])) + " cells" if isinstance(f.get("cells"), list) else ""
+        if results.studies and all(s.kind == "thd" for s in results.studies):  # they have a film of their own
+            film = "with heat, see the studies"
         shape = ", ".join([str(g.get("type", "")).replace("_", " ")] + [f"{k} {quantity(g[k])}" for k in ("arc", "preload", "offset")
                                                                         if k in g and str(g[k]) not in ("0", "0 m")]).strip(", ")
         oil = lubricants.get(b.get("lubricant"), {}) if isinstance(b.get("lubricant"), str) else b.get("lubricant") or {}
