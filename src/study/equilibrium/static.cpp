@@ -392,7 +392,7 @@ io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySumm
                           {},
                           "force of the shaft on the element; motion of its node, relative to its other end"};
   if (!v.between("bearing.", ".eccentricity.x").empty()) places.note += "; c: assembled clearance";
-  if (has_gas) places.note += "; normal: at 0 degC and 101325 Pa";
+  if (has_gas) places.note += "; pressure: absolute, in the film and behind orifices; normal: at 0 degC and 101325 Pa";
   double total = 0;
   for (const std::string& b : v.between("load.", "")) total += std::abs(v["load." + b].value);
   for (const std::string& e : v.between("element.", ".force.x")) {
