@@ -47,13 +47,13 @@ struct Shown {
   }
 };
 
-// The name of a value as few words.
-std::string in_short(std::string value) {
+// The name of a value as few words. `speed_unit`: of a number in the name that is a speed, empty if it is not known.
+std::string in_short(std::string value, const std::string& speed_unit) {
   // Of a film by itself: the number is a speed, and 1 the frequency over it.
   static const std::regex of_speed(R"(speed\.([0-9.]+)\.(?:ratio\.1\.)?(.*))");
   std::string speed;
   if (std::smatch found; std::regex_match(value, found, of_speed)) {
-    speed = " at speed " + found[1].str();
+    speed = speed_unit.empty() ? " at speed " + found[1].str() : fmt::format(" at {} {}", found[1].str(), speed_unit);
     value = found[2].str();
   }
   const auto digit = [&](std::size_t k) {
@@ -167,11 +167,19 @@ private:
     c.value = column.name.substr(std::min(column.name.size(), c.study.size() + 1));
     // Of modes at one speed, which is that of every row.
     static const std::regex at_speed(R"(^at\.[0-9.e+-]+\.(?=first_forward\.))");
-    c.head = in_short(speeds_of(c.study) > 1 ? c.value : std::regex_replace(c.value, at_speed, ""));
+    c.head = in_short(speeds_of(c.study) > 1 ? c.value : std::regex_replace(c.value, at_speed, ""), speed_unit_of(c));
     c.head = node_of(c) + c.head;
     c.name = studies_.size() > 1 ? c.study + ": " + c.head : c.head;
     choose_unit(c);
     return c;
+  }
+
+  // Of the names `speed.2000.VALUE` of a study of one film.
+  [[nodiscard]] std::string speed_unit_of(const Shown& c) const {
+    const auto speed = std::ranges::find_if(s_.columns, [&](const io::SweepColumn& o) {
+      return o.name.starts_with(c.study + ".speed.") && o.name.ends_with(".speed");
+    });
+    return speed == s_.columns.end() ? "" : speed->unit;
   }
 
   // "node 67 ": the place of a peak of a response that has the same one in every row.
