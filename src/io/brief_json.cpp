@@ -20,7 +20,9 @@ Json brief_to_json(const Brief& b) {
     if (!t.note.empty()) table["note"] = t.note;
     tables.push_back(std::move(table));
   }
-  return {{"sentences", b.sentences}, {"tables", std::move(tables)}};
+  Json j = {{"sentences", b.sentences}, {"tables", std::move(tables)}};
+  if (b.tells_stability) j["tells_stability"] = true;
+  return j;
 }
 
 namespace {
@@ -38,6 +40,7 @@ BriefCell brief_cell(const Json& j) {
 Brief brief_of(const Json& j) {
   Brief b;
   b.sentences = j.at("sentences");
+  b.tells_stability = j.value("tells_stability", false);
   for (const Json& t : j.at("tables")) {
     BriefTable& table = b.tables.emplace_back();
     table.caption = t.at("caption");

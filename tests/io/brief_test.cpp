@@ -66,9 +66,11 @@ TEST(Brief, GoesThroughTheFile) {
   StudySummary study;
   study.name = study.kind = "static";
   study.brief = example();
+  study.brief.tells_stability = true;
   all.set(study);
   const Brief back = Summary::from_json(all.to_json()).studies.front().brief;
   EXPECT_EQ(back.sentences, study.brief.sentences);
+  EXPECT_TRUE(back.tells_stability) << "a resumed run does not give the verdict twice";
   ASSERT_EQ(back.tables.size(), 1U);
   const BriefTable &a = study.brief.tables.front(), &b = back.tables.front();
   EXPECT_EQ(a.caption, b.caption);

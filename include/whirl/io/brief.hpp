@@ -40,7 +40,7 @@ struct BriefTable {
 struct Brief {
   std::vector<std::string> sentences = {};
   std::vector<BriefTable> tables = {};
-  bool tells_stability = false;  ///< the sentences hold the verdict of the study; not in the file
+  bool tells_stability = false;  ///< the sentences hold the verdict of the study
 };
 
 /// Chooses the unit of each column by its largest number (um, kN, MPa, deg, ...) and writes the texts of the numbers.
