@@ -215,7 +215,7 @@ private:
   void put_stability(io::StudySummary& summary) const {
     const auto& [growth, speed] = fastest_;
     put_verdict(summary, stable_, unit_,
-                fmt::format("at {} {} {}. Vibration grows there by itself, and how large it becomes depends on the "
+                fmt::format("at {} {} {}. Small vibration grows there by itself, so that amplitudes may depend on the "
                             "duration of the run",
                             number_text(speed, unit_), unit_, growth.words()));
     const auto& service = context_.machine.service_speed;
