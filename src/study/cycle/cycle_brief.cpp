@@ -149,12 +149,12 @@ io::BriefTable safe_disturbance(const io::StudySummary& s, const io::Group& grou
   if (last < 2) return {};
   const std::vector<std::string> names = places_in(branch);
   const std::string length = branch.dataset("x_max").unit;
-  io::BriefTable table{
-      "Safe disturbance below the threshold",
-      {{word, unit}},
-      {},
-      "size of the unstable whirl: sqrt(x^2 + y^2) of its 0-peak amplitudes; from smaller disturbances the "
-      "rotor comes back, larger ones lead to the large whirl"};
+  io::BriefTable table{"Safe disturbance below the threshold",
+                       {{word, unit}},
+                       {},
+                       "amplitude of the unstable whirl, 0-peak, the smaller one of x and y; the rotor comes back from "
+                       "disturbances well "
+                       "within it, larger ones can lead to the large whirl"};
   for (const std::string& name : names) table.columns.push_back({name, length});
   const auto half = [&](const char* d, std::size_t k) {
     return (branch.reals(fmt::format("{}_max", d))[k] - branch.reals(fmt::format("{}_min", d))[k]) / 2;
@@ -168,7 +168,7 @@ io::BriefTable safe_disturbance(const io::StudySummary& s, const io::Group& grou
     row.emplace_back(io::Quantity{at[k], unit});
     for (std::size_t b = 0; b < names.size(); ++b)
       row.emplace_back(
-          io::Quantity{std::hypot(half("x", k * names.size() + b), half("y", k * names.size() + b)), length});
+          io::Quantity{std::min(half("x", k * names.size() + b), half("y", k * names.size() + b)), length});
   }
   return table;
 }
