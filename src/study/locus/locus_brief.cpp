@@ -28,8 +28,8 @@ constexpr std::array<LocusWord, 13> words_of_points{
      {"resonance_1_4", "resonance 1:4"},
      {"cusp", "cusp of two folds"},
      {"bogdanov_takens", "Bogdanov-Takens point"},
-     {"generalised_hopf", "generalised Hopf point: super- and subcritical part"},
-     {"generalised_flip", "generalised flip: super- and subcritical part"},
+     {"generalised_hopf", "generalised Hopf point: super- to subcritical"},
+     {"generalised_flip", "generalised flip: super- to subcritical"},
      {"fold_flip", "fold and flip"},
      {"fold_hopf", "fold and Hopf point"},
      {"fold_neimark_sacker", "fold and Neimark-Sacker point"}}};
