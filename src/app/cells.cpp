@@ -96,7 +96,16 @@ std::string CellTable::text() const {
   };
   constexpr std::size_t most_keys = 3;
   while (!told_apart() && keys.size() < std::min(most_keys, shown.size())) keys.push_back(shown[keys.size() - 1]);
-  if (!told_apart()) keys.resize(1);
+  const auto wide_with = [&](std::size_t c) {
+    std::size_t wide = indent + width[0] + gap + width[c];
+    for (auto k = keys.begin() + 1; k != keys.end(); ++k) wide += gap + width[*k];
+    return wide;
+  };
+  const auto leaves_no_room = [&] {
+    return std::any_of(shown.begin() + static_cast<std::ptrdiff_t>(keys.size()) - 1, shown.end(),
+                       [&](std::size_t c) { return wide_with(c) > widest_line(); });
+  };
+  if (!told_apart() || leaves_no_room()) keys.resize(1);
   shown.erase(shown.begin(), shown.begin() + static_cast<std::ptrdiff_t>(keys.size() - 1));
   std::size_t narrowest = indent + width[0];
   for (auto c = keys.begin() + 1; c != keys.end(); ++c) narrowest += gap + width[*c];
