@@ -179,8 +179,9 @@ void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options,
     if (fine * std::numbers::sqrt2 >= coarse && fine > 1e-6 * size[kin(k)]) steady.push_back(summary.values[k].first);
   }
   if (!steady.empty())
-    summary.warnings.push_back(fmt::format(
-        "the meshes do not show yet how the error falls of {}: its bar may be too small", fmt::join(steady, ", ")));
+    summary.warnings.push_back(
+        fmt::format("the meshes are too coarse to confirm convergence of {}: the error bars may be too small",
+                    fmt::join(steady, ", ")));
   const double left = options.tolerance * options.ambient.temperature;
   bars.write([&](const std::string& name, double value) {
     if (name.starts_with("temperature.")) return left;
