@@ -41,7 +41,7 @@ void OpenBores::warn(io::StudySummary& summary, const std::string& unit) const {
   for (const Bore& b : bores_)
     if (b.farthest > 1)
       summary.warnings.push_back(
-          fmt::format("the journal of bearing {} moves up to {:.1f} clearances from the centre{}, outside its bore, "
+          fmt::format("the journal of bearing {} moves up to {:.2f} clearances from the centre{}, outside its bore, "
                       "where {} of {:.3g} deg leave{} it open: the equations have no wall there",
                       b.name, b.farthest, unit.empty() ? "" : fmt::format(" (at {:.6g} {})", b.at, unit),
                       b.two ? "two pads" : "one pad", b.arc * 180 / std::numbers::pi, b.two ? "" : "s"));
