@@ -105,7 +105,9 @@ def show(table, folded=False):
     # Short texts stay on one line, long ones keep a width in which they can be read.
     length = [max((len(str(row[k])) for row in table.rows), default=0) for k in range(len(table.head))]
     mark = [" class=n" if r else " class=short" if n <= 30 else " class=long" for r, n in zip(right, length)]
-    head = "".join(f"<th{m}>{escape(h)}</th>" for m, h in zip(mark, table.head))
+    # A unit stays in one piece where a narrow screen breaks the line of the heads.
+    heads = [re.sub(r"\[.*?\]", lambda unit: unit[0].replace(" ", "\u00a0"), escape(h)) for h in table.head]
+    head = "".join(f"<th{m}>{h}</th>" for m, h in zip(mark, heads))
     body = "".join("<tr>" + "".join(f"<td{m}>{marked(c, 'verdict' in (h, row[0]))}</td>" for m, h, c in zip(mark, table.head, row)) + "</tr>" for row in table.rows)
     note = f"<p class=note>{escape(table.note)}</p>" if table.note else ""
     caption = "" if folded or not table.caption else f"<caption><span>{escape(table.caption)}</span></caption>"
