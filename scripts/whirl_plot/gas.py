@@ -7,6 +7,12 @@ from .style import BAD, COLOURS, GREY, INK, ON_PRESSURE, PRESSURE, grid_of, leas
 from .thd_maps import angle_ticks
 from .units import digits
 
+
+def from_zero(axis):
+    """A vertical axis from 0, with as much room above the curves as there is of an axis that they fill."""
+    axis.set_ylim(0, 1.05 * max((np.nanmax(line.get_ydata(), initial=0) for line in axis.lines), default=0) or 1)
+
+
 CURVES = (("load", 1, "load [N]"), ("attitude", 180 / np.pi, "attitude angle [deg]"), ("min_thickness", 1e6, "thinnest film [\u00b5m]"), ("max_pressure", 1e-6, "largest pressure [MPa, absolute]"),
           ("power_loss", 1, "power loss [W]"), ("knudsen", 1, "Knudsen number"), ("normal_flow", 1, "flow [l/min, normal]"))
 
@@ -20,6 +26,8 @@ def draw_curves(study):
     figure, axes, _ = grid_of(len(shown), 2.8, 2.6, -(-len(shown) // 2))
     for axis, (name, factor, label) in zip(axes, shown):
         values = study.get(f"curves/{name}")
+        if name == "power_loss" and np.nanmax(values) < 0.1:
+            factor, label = 1e3, label.replace("[W]", "[mW]")
         for k, speed in enumerate(speeds):
             axis.plot(e, factor * values[k], "-o" if len(e) > 2 else "o", markersize=3.5, color=COLOURS[k % len(COLOURS)], label=f"{speed:.4g} rad/s")
         axis.set_ylabel(label)
@@ -27,7 +35,7 @@ def draw_curves(study):
         if name == "attitude":
             least_span(axis, 1, 2)
         else:
-            axis.set_ylim(bottom=0)
+            from_zero(axis)
     return save(figure, study, "gas-curves", "journal held in the given direction; attitude from the load, with the rotation", handles=axes[0].get_legend_handles_labels()[0])
 
 
@@ -43,10 +51,11 @@ def draw_isobars(study):
     shown = known if len(known) == 1 else [known[0], known[-1]]
     figure, axes = plt.subplots(len(shown), 1, figsize=(9.6, 2.9 * len(shown)), squeeze=False, sharex=True)
     levels = np.linspace(p[shown].min(), p[shown].max(), 22)
+    places = max(2, -int(np.floor(np.log10(np.ptp(levels) / 10 or 1))))  # neighbouring isobars have different labels
     for axis, k in zip(axes[:, 0], shown):
         filled = axis.contourf(theta, z, p[k].T, levels, cmap=PRESSURE)
         lines = axis.contour(theta, z, p[k].T, levels[1:-1:2], colors=ON_PRESSURE, linewidths=0.6)
-        axis.clabel(lines, fmt="%.2f", fontsize=6.5)
+        axis.clabel(lines, fmt=f"%.{places}f", fontsize=6.5)
         axis.set_title(f"{speeds[k]:.4g} rad/s", fontsize=9)
         axis.set_ylabel("z [mm]")
         angle_ticks(axis, theta[0], theta[-1])
@@ -84,7 +93,7 @@ def draw_map(study):
             axis.plot(c, values[:, k], "-o", markersize=3.5, color=COLOURS[k % len(COLOURS)], label=f"{diameter:.3g} mm")
         axis.set_xlabel("clearance [µm]")
         axis.set_ylabel(label)
-        axis.set_ylim(bottom=0)
+        from_zero(axis)
     return save(figure, study, "gas-map", f"at an eccentricity of {study.group['map'].attrs['eccentricity']:.3g} clearances; colours: diameter of the orifices",
                 handles=axes[0].get_legend_handles_labels()[0])
 

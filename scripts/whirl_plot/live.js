@@ -92,7 +92,7 @@
       if (line.hollow) Object.assign(found, {pointBackgroundColor: 'transparent', pointBorderColor: line.c});
       if (line.s) found.segment = {
         borderColor: c => of(c.p0DataIndex).c || line.c,
-        borderDash: c => DASHES[of(c.p0DataIndex).d || 0],
+        borderDash: c => DASHES[of(c.p0DataIndex).d ?? line.d ?? 0],
       };
       if (line.bare || line.dots) Object.assign(found, {showLine: false, pointRadius: line.dots ? 2 : 0});
       return found;
