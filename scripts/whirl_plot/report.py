@@ -60,8 +60,9 @@ CAPTIONS = {
     "line-modes": "Modes of torsion or along the axis.", "transfer": "Transfer functions of the motion under random forces.", "coherence": "Coherence: how much of the motion is linear in the forces.",
     "excitation": "Spectrum of the random forces.", "thd-iterations": "Convergence of film and solids.", "thd-meshes": "Results of the film with heat over the mesh.",
     "thd-budget": "Where the heat comes from and goes to, over the speed.", "thd-effective": "How well one temperature stands for the film.",
-    "thd-properties": "Clearance and properties of the fluid over the temperature.", "thd-profiles": "Temperature and velocity across the film.",
+    "thd-properties": "Clearance and properties of the fluid over the temperature.", "thd-profiles": "Temperature across the film.",
     "thd-radial": "Temperature along the radius, from shaft to bush.", "thd-maps": "Pressure and temperature of the film, unwrapped.", "thd-velocity": "Velocity in the film.",
+    "thd-axial": "Temperature along the shaft, where the film is thinnest and opposite.", "thd-axial-orifice": "Temperature along the shaft, at an orifice and between two.",
     "thd-fluid": "Properties of the fluid in the film.", "thd-heat": "Heat per area of the film.", "thd-film": "Temperature in sections through the film.",
     "frequencies": "Stiffness and damping over the frequency of a vibration.", "stiffness": "Stiffness of the films.", "damping": "Damping of the films.",
 }
