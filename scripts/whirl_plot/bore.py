@@ -81,6 +81,11 @@ def outline(study, b):
     return found
 
 
+def lines_in_words(study, bearings):
+    """What thick and dotted lines of these clearances mean; a whole bore has neither."""
+    return "pads thick, no wall where dotted; " * any(dash for b in bearings for *_, dash in outline(study, b))
+
+
 def draw_clearance(axis, study, b, points=()):
     """Pads as thick arcs; dotted between them how far the journal could go; the panel holds it and `points` (x, y in um)."""
     lines = outline(study, b)

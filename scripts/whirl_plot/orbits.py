@@ -2,7 +2,7 @@
 import numpy as np
 
 from .bifurcation import Followed, legend
-from .bore import distance_in_words, draw_clearance, outline
+from .bore import distance_in_words, draw_clearance, lines_in_words, outline
 from .canvas import Line2D, plt
 from .curves import periodic
 from .style import DASHED, GREY, INK, ROTATION, Y, grid_of, mark, mark_end, parameter_label, save, span_of, ticks_at
@@ -109,7 +109,7 @@ def draw(study, shown=9):
     given = "" if study.attribute("parameter_unit", "1") == "1" else " " + study.attribute("parameter_unit")
     handles = [Line2D([], [], color=c, linestyle=DASHED if s is False else "-",
                       label=f"{o.parameter:.5g}{given}" + (", unstable" if s is False else "")) for o, c, s in zip(orbits, colours, stable)]
-    first = "above in the clearance, pads thick, no wall where dotted; below enlarged; " if known else ""
+    first = f"above in the clearance; {lines_in_words(study, range(len(names)))}below enlarged; " if known else ""
     moment = "shaft angle 0" if study.attribute("unbalance", "") else "the phase chosen as zero"
     meaning = words if by_parameter else "way along the branch, which turns"
     note = f"{first}colours: {meaning}; dashed: unstable; dot: {moment}; {study.shown}"
@@ -185,7 +185,7 @@ def draw_locus(study):
         finish(axis, name)
     colours = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
     figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.01, label=parameter_label(study)).outline.set_visible(False)
-    return save(figure, study, "locus", f"pads thick, no wall where dotted; equilibrium of the journal relative to the bearing centre; small dots unstable; {ROTATION}",
+    return save(figure, study, "locus", f"{lines_in_words(study, range(len(names)))}equilibrium of the journal relative to the bearing centre; small dots unstable; {ROTATION}",
                 legend([branch])[2:])
 
 
@@ -210,5 +210,5 @@ def draw_positions(study):
             lines += distance_in_words(study, b, x[b], y[b])
         finish(axis, name if load is None else f"{name}: {person(np.atleast_1d(load)[b], 'N', 4)}")
         axis.set_xlabel(f"x [\u00b5m]\n{lines}", fontsize=8)
-    return save(figure, study, "journals", "pads thick, no wall where dotted; journal relative to the bearing centre; c: assembled clearance; "
+    return save(figure, study, "journals", f"{lines_in_words(study, bores)}journal relative to the bearing centre; c: assembled clearance; "
                 f"load of the journal on the bearing, positive down; {ROTATION}")
