@@ -1,4 +1,5 @@
 """What each study found, in a sentence or two."""
+from whirl.answer import in_print
 
 
 def of(study):
@@ -6,6 +7,7 @@ def of(study):
     words = ""
     for said in study.answer.sentences:
         words += (" " if words.endswith(".") else "; " if words else "") + said
-    if study.status not in ("", "completed"):
-        words += f" {study.status[:1].upper()}{study.status[1:]}." if words.endswith(".") else f"; {study.status}" if words else study.status
+    status = in_print(study.status)
+    if status not in ("", "completed"):
+        words += f" {status[:1].upper()}{status[1:]}." if words.endswith(".") else f"; {status}" if words else status
     return words

@@ -206,7 +206,7 @@ def counted(number, what, several=""):
 def section(study, pictures):
     bad = "" if study.status == "completed" else " class=bad"
     seconds, points = study.summary.get("wall_seconds"), study.summary.get("points")
-    facts = [escape(study.kind.replace("_", " ")), f"<span{bad}>{escape(study.status or 'not finished')}</span>"]
+    facts = [escape(study.kind.replace("_", " ")), f"<span{bad}>{escape(in_print(study.status or 'not finished'))}</span>"]
     if points is not None:
         facts.append(escape(counted(points, "point")))
     if isinstance(seconds, (int, float)):
