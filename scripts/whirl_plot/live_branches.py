@@ -53,7 +53,7 @@ def marks(branch, tables, option, scale, panel=0):
             text += f", {told['sentence']}" if isinstance(told.get("sentence"), str) else ""
             found.append(line([value], [at.at(values, place)], words, panel, option, INK, m=SHAPES.get(marker, "crossRot"), t=[text]))
         for reason in branch.ends:
-            found.append(line(at.parameter[-1:], values[-1:], "early end", panel, option, INK, m="crossRot", t=[f"the branch ends: {reason}"]))
+            found.append(line(at.parameter[-1:], values[-1:], "early end", panel, option, INK, m="crossRot", t=[f"the branch ends: {in_print(reason)}"]))
     return found
 
 
