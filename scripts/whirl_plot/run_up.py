@@ -2,6 +2,7 @@
 import numpy as np
 
 from .canvas import Line2D
+from .response import Validity
 from .style import GREY, grid_of, length_unit, mark_service, save, span_of
 from .units import digits
 
@@ -31,7 +32,7 @@ def distinct(found):
 
 
 def steady(results, key):
-    """(speed in rad/s, semi-major axis in m) of the linear response at the same place, for the run-ups' unbalance."""
+    """(speed in rad/s, semi-major axis in m) of the linear response at the same place, for the run-ups' unbalance; not a number where it is no answer."""
     for study in results.studies:
         if study.kind != "unbalance_response" or not study.has("response/speed", RESPONSE_COLUMN[key[0]]):
             continue
@@ -39,7 +40,7 @@ def steady(results, key):
         values = study.get(RESPONSE_COLUMN[key[0]]).reshape(len(speed), -1)
         names = study.bearings(values.shape[1]) if key[0] == "bearings" else [int(n) for n in np.atleast_1d(study.get("response/node"))]
         if key[1] in names:
-            yield speed, values[:, list(names).index(key[1])]
+            yield speed, np.where(Validity(study, len(speed)).answer, values[:, list(names).index(key[1])], np.nan)
 
 
 def draw_together(results):
@@ -60,7 +61,7 @@ def draw_together(results):
         for speed, major in steady(results, key):
             axis.plot(speed * per_unit, major * scale, color=GREY, linewidth=2.6, alpha=0.45, zorder=1)
             linear = True
-            steadily = max(steadily, np.nanmax(major) * scale)
+            steadily = max(steadily, np.nanmax(major, initial=0) * scale)
         for study in studies:
             for _, other, amplitude in places(study):
                 if other == key:
