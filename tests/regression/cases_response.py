@@ -141,7 +141,7 @@ def wide(h):
     h.true("above the cut-off no mesh helps", warned(s["short"], "rad/s the response is not that of the shaft", "beam theory ends"), str(s["short"]["warnings"]))
     h.true("refined ones are", not near.get("verdict") and not near.get("notes"), str(near))
     h.true("rounding has no peaks", not peaks(s["couple"], "node 2") and peaks(s["couple"], "left, journal"), str(s["couple"].get("peaks")))
-    h.true("frequencies pass over it", warned(s["t"], "step over narrow resonances", "498.65 rad/s", "(node 2 x from node 2 x reaches ", " m/N there, ", " m/N at the frequencies beside it)"), str(s["t"].get("warnings")))
+    h.true("frequencies pass over it", warned(s["t"], "step over narrow resonances", "498.65 rad/s", "(node 2 x from node 2 x reaches ", " um/N there, ", "m/N at the frequencies beside it)"), str(s["t"].get("warnings")))
 
 
 def near(h):

@@ -179,7 +179,7 @@ void put_contact(io::StudySummary& summary, double place, const std::string& uni
   summary.set("contact", place, unit, more);
   if (there.empty() || told) return;
   summary.warnings.push_back(fmt::format(
-      "where the film becomes too thin hangs on the mesh ({:.4g} {} on this one; {}) and says nothing about the "
+      "where the film becomes too thin depends on the mesh ({:.4g} {} on this one; {}) and says nothing about the "
       "machine{}",
       place, unit, fmt::join(others, "; "),
       away ? ": with each finer mesh it moves farther, so that it has no limit and no error bar" : ""));

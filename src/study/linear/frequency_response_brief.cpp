@@ -8,6 +8,7 @@
 
 #include "study/linear/frequency_response.hpp"
 #include "study/linear/linear_brief.hpp"
+#include "study/linear/passed_over.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
@@ -18,15 +19,6 @@ std::string response_words(std::string name) {
   std::ranges::replace(name, '.', ' ');
   std::ranges::replace(name, '_', ' ');
   return name;
-}
-
-// Displacements and slopes over forces are small numbers of metres and radians.
-io::Quantity in_micro(io::Quantity q) {
-  constexpr double large = 1e-2;
-  if (!(std::abs(q.value) < large)) return q;
-  if (q.unit.starts_with("m/")) return scaled(q, 1e6, "u" + q.unit);
-  if (q.unit.starts_with("1/")) return scaled(q, 1e6, "urad" + q.unit.substr(1));
-  return q;
 }
 
 // How the films were taken, by the names of the values.
@@ -81,7 +73,7 @@ io::Brief FrequencyResponse::brief(const StudyResult& result, std::span<const io
   io::BriefTable ways{"With films by coefficients, against the films as they are",
                       {{"films by"}, {"difference", "%"}, {"at", at_unit}},
                       {},
-                      "largest difference of the matrix of transfer functions, of its size there"};
+                      "difference: of the matrix of all transfer functions, relative to it, where it is largest"};
   for (const std::string& way : v.between("", ".difference"))
     ways.rows.push_back(
         {way_words(way, options), to_digits(scaled(v[way + ".difference"], 100, "%"), 3), v[way + ".difference_at"]});

@@ -4,10 +4,20 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "study/brief.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
+
+io::Quantity in_micro(io::Quantity q) {
+  constexpr double large = 1e-2;
+  if (!(std::abs(q.value) < large)) return q;
+  if (q.unit.starts_with("m/")) return scaled(q, 1e6, "u" + q.unit);
+  if (q.unit.starts_with("1/")) return scaled(q, 1e6, "urad" + q.unit.substr(1));
+  return q;
+}
 
 void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>& resonances,
                          const std::vector<Transfer>& at_resonances, const std::vector<double>& frequencies,
@@ -31,9 +41,10 @@ void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>
       std::string name = names[e].name;
       std::ranges::replace_if(
           name, [](char c) { return c == '.' || c == '_'; }, ' ');
+      const io::Quantity top = in_micro({here, names[e].unit}), low = in_micro({beside, names[e].unit});
       words = fmt::format("{:.6g} {} ({} reaches {:.3g} {} there, {:.3g} {} at the frequencies beside it)",
-                          deck::from_si(resonances[k].speed, unit, deck::frequency), unit, name, here, names[e].unit,
-                          beside, names[e].unit);
+                          deck::from_si(resonances[k].speed, unit, deck::frequency), unit, name, top.value, top.unit,
+                          low.value, low.unit);
     }
     if (!words.empty()) all.push_back(words);
   }

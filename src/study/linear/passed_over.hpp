@@ -16,6 +16,9 @@ struct ResponseName {
   std::string name, unit;
 };
 
+/// A transfer function in um/N or urad/N: displacements and slopes over forces are small numbers of metres and radians.
+[[nodiscard]] io::Quantity in_micro(io::Quantity q);
+
 /// Warns of the resonances between two neighbours of the rising `frequencies` [rad/s] at which a transfer function is
 /// more than 1.1 times what it is at both: the largest answers are too small there. `at_resonances`: the functions
 /// beside the top of each; empty where there is no answer, and nothing is said. `found`: those at the frequencies.

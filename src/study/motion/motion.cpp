@@ -327,16 +327,20 @@ io::BriefTable table_of_exponents(const Values& v) {
   io::BriefTable table{"Lyapunov exponents",
                        {{"exponent"}, {"value", "1/s"}, {"per " + turn_of(v), "1"}},
                        {},
-                       "positive: neighbouring motions part; bar: the interval that holds it with 99 % probability"};
+                       "positive: neighbouring motions part"};
+  bool barred = false;
   for (int k = 1; v.get(fmt::format("lyapunov.{}", k)); ++k) {
     const std::string head = fmt::format("lyapunov.{}", k);
     io::Quantity rate = v[head], turn = v[head + ".per_revolution"];
     if (const auto bar = v.get(head + ".uncertainty")) {
+      barred = true;
       rate.more["uncertainty"] = *bar;
       if (rate.value != 0) turn.more["uncertainty"] = std::abs(*bar * turn.value / rate.value);
     }
     table.rows.push_back({std::to_string(k), rate, turn});
   }
+  table.note +=
+      barred ? "; bar: the interval that holds it with 99 % probability" : "; the motion is too short for bars";
   return table;
 }
 

@@ -32,6 +32,9 @@
 namespace whirl::study {
 namespace {
 
+constexpr std::string_view not_faded =
+    "the free vibration of the start has not faded when the run ends: amplitudes contain it";
+
 problem::Drive drive_of(const RunUpOptions& o) {
   const double change = o.range.to - o.range.from;
   return {o.range.from, o.duration ? change / o.duration->value : std::copysign(o.acceleration->value, change)};
@@ -385,8 +388,7 @@ private:
       const auto settled = std::find(transient.begin(), transient.end(), 0.0) - transient.begin();
       if (slowest_ < 0) summary.set("start_transient.revolutions", static_cast<double>(settled), "1");
       if (settled == static_cast<std::ptrdiff_t>(transient.size()))
-        summary.warnings.emplace_back(
-            "the free vibration of the start has not faded when the run ends: amplitudes contain it");
+        summary.warnings.emplace_back(std::string(not_faded));
       std::vector<std::string> bearings, nodes;
       for (const auto& name : places_.names) bearings.push_back("bearing." + name);
       for (const int node : options_.nodes) nodes.push_back(fmt::format("node.{}", node));
@@ -448,11 +450,14 @@ io::Brief RunUp::brief(const StudyResult& result, std::span<const io::StudySumma
   const auto peak = [&](const std::string& place) { return v[place + ".peak.amplitude"]; };
   const auto top = std::ranges::max_element(places, {}, [&](const auto& p) { return peak(p).value; });
   if (top == places.end()) return {};
-  io::BriefTable table{"Largest vibration on the way",
-                       {{"place"}, {"amplitude, 0-peak", "m"}, {"at", options.range.unit}},
-                       {},
-                       "0-peak: largest distance from the mean position within a revolution; the free vibration of "
-                       "the start is left out"};
+  const bool faded = std::ranges::find(result.summary.warnings, not_faded) == result.summary.warnings.end();
+  io::BriefTable table{
+      "Largest vibration on the way",
+      {{"place"}, {"amplitude, 0-peak", "m"}, {"at", options.range.unit}},
+      {},
+      fmt::format("0-peak: largest distance from the mean position within a revolution; the free vibration of the "
+                  "start is {}",
+                  faded ? "left out" : "contained")};
   for (const std::string& p : places) table.rows.push_back({name(p), peak(p), v[p + ".peak.speed"]});
   const bool up = options.range.to > options.range.from;
   std::vector<std::string> sentences{

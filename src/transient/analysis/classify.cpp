@@ -119,7 +119,8 @@ Verdict autonomous(const Evidence& e, int period) {
   if (const auto verdict = drifting(e)) return *verdict;
   const std::string none =
       e.returns.empty() ? "" : fmt::format("no return within {} crossings of the section, ", e.returns.size());
-  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", none + without_bars(e)};
+  const std::string seldom = none.empty() ? "fewer than two crossings of the section, " : none;
+  if (!known(e)) return {MotionKind::unsettled, 0, "unsettled", seldom + without_bars(e)};
   if (sign_of(e, 0) == Sign::positive) return {MotionKind::chaotic, 0, "chaotic", none + largest(e)};
   int zeros = 0;
   for (std::size_t k = 0; k < e.exponents.size(); ++k) zeros += sign_of(e, k) == Sign::zero;
