@@ -1,6 +1,8 @@
 """Charts of branches over a parameter, with the orbit of the point under the cursor beside them, and of the orbits themselves."""
 import numpy as np
 
+from whirl.answer import in_print
+
 from .bifurcation import Followed, damped, distinct, without_twins, words_of_dashes
 from .bore import outline
 from .live import line, rounded, service_place

@@ -53,7 +53,7 @@ def draw_spectrum(axis, order, x, y, unit, study, top=6.0):
         axis.semilogy(order[shown], np.maximum(values[shown], floor), color=colour, linewidth=0.8, label=label)
     axis.set_xlim(0, top)
     axis.set_xlabel(frequencies_of(study))
-    axis.set_ylabel(f"amplitude, 0-peak [{unit}]")
+    axis.set_ylabel("amplitude, 0-peak" + f" [{unit}]" * (unit != "1"))
     axis.legend(loc="upper right")
 
 

@@ -45,7 +45,7 @@ Cost cost(system::RotorSystem& s, Vec x, double alpha, double sigma, bool own) {
   solve::PortKrylov krylov(*blocks.layout(), "stage_");
   Cost out;
   out.prepare = 1e3 * bench::least(PETSC_COMM_SELF, 3, [&] {
-                        if (own) elimination.inverse()->set(0, x, rest.get(), alpha, sigma);
+                        if (own) elimination.inverse()->set({0, x, rest.get()}, alpha, sigma);
                         elimination.factorise(a.get(), blocks);
                       }).processor;
   try {

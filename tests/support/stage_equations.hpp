@@ -39,7 +39,7 @@ public:
     auto inverse = system_.make_part_inverse();
     EXPECT_TRUE(inverse);
     auto out = std::make_unique<solve::PortElimination>(system_.fields(), std::move(inverse));
-    out->inverse()->set(0, x_.get(), rest_.get(), alpha, sigma);
+    out->inverse()->set({0, x_.get(), rest_.get()}, alpha, sigma);
     const core::Matrix a = matrix(alpha, sigma);
     out->factorise(a.get(), blocks(a.get()));
     return out;
