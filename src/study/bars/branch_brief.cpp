@@ -155,8 +155,8 @@ std::vector<std::string> on_stability(const io::StudySummary& s, const std::vect
   if (s.stability.empty() || all.empty()) return {};
   const std::string unit = s.ranges.front().unit, subject = "The " + what + " ";
   if (all.size() == 1 && all[0].stability == "undetermined")
-    return {fmt::format("Whether the {} is stable is undetermined {}: the mesh does not tell, see the warnings.", what,
-                        span(all[0], unit))};
+    return {
+        fmt::format("Whether the {} is stable is undetermined {}: the warnings say why.", what, span(all[0], unit))};
   if (all.size() == 1) return {fmt::format("{}is {}, {}.", subject, s.stability, span(all[0], unit))};
   if (s.stability.starts_with("stable or undamped"))
     return {fmt::format("{}is {}, {}: nothing grows.", subject, s.stability,
@@ -173,8 +173,7 @@ std::vector<std::string> on_stability(const io::StudySummary& s, const std::vect
   while (k < all.size() && !(grows(all[k]) && dies_out(all[k - 1]))) ++k;
   if (k == all.size())
     return {fmt::format("{}is {}.", subject, in_turn(all, 3, unit)),
-            open.empty() ? "" : "Where it is undetermined the mesh does not tell, see the warnings.",
-            later(all, 3, unit)};
+            open.empty() ? "" : "The warnings say why it is undetermined.", later(all, 3, unit)};
   return {as_sentence(subject + loss(s, all[k - 1], all[k], unit)), undetermined, later(all, k + 1, unit)};
 }
 

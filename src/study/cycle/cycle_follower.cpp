@@ -360,6 +360,7 @@ StudyResult CycleFollower::run() {
   BranchVerdict verdict = record_.verdict();
   for (const BranchChange& c : changes_) verdict.add(c);
   record_.warn_of_waves(results.summary());
+  record_.warn_of_unknown(results.summary());
   for (const auto& wanted : options_.at)
     if (const int times = record_.passes(wanted.value / scale_); times > 1) {
       const std::string key = number_text(wanted.value, unit_);

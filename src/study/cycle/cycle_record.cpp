@@ -1,5 +1,7 @@
 #include "study/cycle/cycle_record.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -212,6 +214,20 @@ void CycleRecord::warn_of_waves(io::StudySummary& summary) const {
     waves.add(table_.column("parameter")[k],
               std::vector<std::complex<double>>(static_cast<std::size_t>(table_.column("mesh_waves")[k])));
   waves.warn(summary, unit_);
+}
+
+void CycleRecord::warn_of_unknown(io::StudySummary& summary) const {
+  const auto &at = table_.column("parameter"), &count = table_.column("unstable_count");
+  std::vector<double> places;
+  for (std::size_t k = 0; k < table_.rows(); ++k)
+    if (count[k] < 0) places.push_back(at[k]);
+  if (places.empty()) return;
+  const auto [least, most] = std::ranges::minmax(places);
+  summary.warnings.push_back(
+      fmt::format("the search for multipliers did not converge at {} of {} points, {:.6g} to {:.6g} {}: whether the "
+                  "motion is stable "
+                  "there is not known (-monodromy_eps_max_it, -monodromy_eps_ncv)",
+                  places.size(), table_.rows(), least, most, unit_));
 }
 
 bool CycleRecord::one_sided() const {

@@ -44,6 +44,8 @@ public:
   [[nodiscard]] int passes(double parameter) const;
   /// Says where waves of a film's mesh grow, which are left out, if any do.
   void warn_of_waves(io::StudySummary& summary) const;
+  /// Says at how many points the search for multipliers did not converge, if at any.
+  void warn_of_unknown(io::StudySummary& summary) const;
   /// The points so far, by their stability.
   [[nodiscard]] BranchVerdict verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
