@@ -314,10 +314,15 @@ io::BriefTable table_of_ends(const io::Group& group) {
   const std::vector<std::string>& names = x.labels.front();
   io::BriefTable table{"At the ends of the branch", {{"place"}, {parameter_word(parameter), unit}}, {}, {}};
   for (const char* axis : {"x", "y"}) table.columns.push_back({axis, x.unit});
+  double largest = 0;
+  for (const auto* all : {&xs, &ys})
+    for (const double v : *all) largest = std::max(largest, std::abs(v));
+  // What is smaller is rounding.
+  const auto place = [&](double v) { return io::Quantity{std::abs(v) < 1e-12 * largest ? 0.0 : v, x.unit}; };
   for (std::size_t b = 0; b < names.size(); ++b)
     for (const std::size_t k : {std::size_t{0}, at.size() - 1})
-      table.rows.push_back({names[b], io::Quantity{at[k], unit}, io::Quantity{xs[k * names.size() + b], x.unit},
-                            io::Quantity{ys[k * names.size() + b], x.unit}});
+      table.rows.push_back(
+          {names[b], io::Quantity{at[k], unit}, place(xs[k * names.size() + b]), place(ys[k * names.size() + b])});
   return table;
 }
 
