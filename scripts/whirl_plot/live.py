@@ -55,6 +55,9 @@ def rounded(values, count=DIGITS, bars=None):
     known = np.isfinite(values)
     first = np.floor(np.log10(np.where(known & (size > 0), size, 1.0)))
     places = count - 1 - first
+    # A small orbit far from the centre keeps its shape; what is smaller still is rounding.
+    if (wide := np.ptp(values[known]) if known.any() else 0) > 1e-9 * np.max(size[known], initial=0):
+        places = np.maximum(places, np.minimum(3 - np.floor(np.log10(wide)), 14 - first))
     if bars is not None:
         sure = np.isfinite(bars) & (np.asarray(bars) > 0)
         places = np.where(sure, np.clip(2 - np.floor(np.log10(np.where(sure, bars, 1.0))), places, 14 - first), places)

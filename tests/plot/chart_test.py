@@ -248,6 +248,7 @@ def numbers(_):
     """Six digits, whole numbers without a point, no number where there is none."""
     assert live.rounded([1234.5678, -0.00123456789, 0, np.nan, np.inf, 5e9, 3.0]) == [1234.57, -0.00123457, 0, None, None, 5000000000, 3]
     assert json.dumps(live.rounded([0.1 + 0.2, 1 / 3, 2e-17])) == "[0.3, 0.333333, 2e-17]"
+    assert live.rounded([36.80512, 36.81268, 36.80871], 4) == [36.80512, 36.81268, 36.80871]  # an orbit that is small beside its distance from the centre
 
 
 def licence(_):

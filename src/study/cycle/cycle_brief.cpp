@@ -153,8 +153,7 @@ io::BriefTable safe_disturbance(const io::StudySummary& s, const io::Group& grou
                        {{word, unit}},
                        {},
                        "amplitude of the unstable whirl, 0-peak, the smaller one of x and y; the rotor comes back from "
-                       "disturbances well "
-                       "within it, larger ones can lead to the large whirl"};
+                       "disturbances well within it, larger ones can lead to the large whirl"};
   for (const std::string& name : names) table.columns.push_back({name, length});
   const auto half = [&](const char* d, std::size_t k) {
     return (branch.reals(fmt::format("{}_max", d))[k] - branch.reals(fmt::format("{}_min", d))[k]) / 2;
