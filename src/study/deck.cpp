@@ -179,7 +179,16 @@ std::vector<std::string> unusual(const system::Machine& machine, BarsFrom bars) 
   std::vector<std::string> all = unusual_lubricants(machine);
   for (std::string& line : unusual_material(machine)) all.push_back(std::move(line));
   for (std::string& line : negative_damping(machine)) all.push_back(std::move(line));
-  for (std::string& line : rotor::impossible_inertias(machine.rotor)) all.push_back(std::move(line));
+  const auto add = [&all](std::vector<std::string> lines) { all.insert(all.end(), lines.begin(), lines.end()); };
+  add(rotor::impossible_inertias(machine.rotor));
+  add(rotor::advice(machine.rotor));
+  add(machine_warnings(machine));
+  constexpr std::size_t enough = 5;
+  for (const system::Element& e : machine.elements)
+    if (!e.table.empty() && e.table.size() < enough)
+      all.push_back(
+          fmt::format("element {}: its table has {} rows; with fewer than {} the curve between them is a guess", e.name,
+                      e.table.size(), enough));
   if (bars == BarsFrom::none)
     all.emplace_back(
         "bars: none: the errors of the meshes are not estimated. Stability and margins are those of the meshes in use; "
@@ -189,16 +198,8 @@ std::vector<std::string> unusual(const system::Machine& machine, BarsFrom bars) 
 
 std::vector<std::string> warnings(const Deck& d) {
   std::vector<std::string> all = unusual(d.machine, d.bars);
-  const auto add = [&all](std::vector<std::string> lines) { all.insert(all.end(), lines.begin(), lines.end()); };
-  add(rotor::advice(d.machine.rotor));
-  add(machine_warnings(d.machine));
-  for (const auto& s : d.studies) add(table_warnings(d.machine, *s));
-  constexpr std::size_t enough = 5;
-  for (const system::Element& e : d.machine.elements)
-    if (!e.table.empty() && e.table.size() < enough)
-      all.push_back(
-          fmt::format("element {}: its table has {} rows; with fewer than {} the curve between them is a guess", e.name,
-                      e.table.size(), enough));
+  for (const auto& s : d.studies)
+    for (std::string& line : table_warnings(d.machine, *s)) all.push_back(std::move(line));
   const std::vector<std::string> own = all;
   for (const auto& s : d.studies) {
     const auto* sweep = dynamic_cast<const Sweep*>(s.get());

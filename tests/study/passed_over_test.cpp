@@ -19,7 +19,7 @@ std::vector<std::string> said_of(const Transfer& there) {
 TEST(PassedOver, IsAResonanceThatReachesMoreThanTheFrequenciesBeside) {
   const auto said = said_of({{{0.006, 0.008}, 1e-22}, {1e-14, 1e-14}});
   ASSERT_EQ(said.size(), 1U);
-  EXPECT_NE(said[0].find("150 rad/s (a from a reaches 0.01 m/N there, 2e-06 m/N at the frequencies beside it)"),
+  EXPECT_NE(said[0].find("150 rad/s (a from a reaches 1e+04 um/N there, 2 um/N at the frequencies beside it)"),
             std::string::npos)
       << said[0];
   EXPECT_TRUE(said_of({{2.1e-6, 0}, {1e-14, 1e-14}}).empty());

@@ -61,13 +61,13 @@ TEST(OpenBores, WarnsOfAJournalWhereNoPadIs) {
   // Above an arc below: 2.1 clearances from the centre.
   const auto above = warned(machine, 0, 0.1, 2.1);
   ASSERT_EQ(above.size(), 1U);
-  for (const char* part : {"bearing B1", "2.1 clearances", "2800 rpm", "one pad of 150 deg"})
+  for (const char* part : {"bearing B1", "2.10 clearances", "2800 rpm", "one pad of 150 deg"})
     EXPECT_NE(above[0].find(part), std::string::npos) << above[0];
   EXPECT_EQ(warned(machine, 0, 0.1, 2.1, "")[0].find("rpm"), std::string::npos);
   // Between two pads: 2.2 clearances to the side.
   const auto between = warned(machine, 1, -2.2, 0.2);
   ASSERT_EQ(between.size(), 1U);
-  for (const char* part : {"bearing B2", "2.2 clearances", "two pads of 80 deg"})
+  for (const char* part : {"bearing B2", "2.21 clearances", "two pads of 80 deg"})
     EXPECT_NE(between[0].find(part), std::string::npos) << between[0];
 }
 

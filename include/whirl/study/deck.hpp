@@ -41,7 +41,7 @@ void describe(deck::Description<Deck>& d);
 
 /// What is unusual about the numbers of the machine and about its error bars, a line each; the results carry these.
 [[nodiscard]] std::vector<std::string> unusual(const system::Machine& machine, BarsFrom bars);
-/// That, and what is unusual about the lengths of the shaft's segments and in variants, a line each; nothing of it
+/// That, and what is unusual about tables beside the speeds of studies and about variants, a line each; nothing of it
 /// keeps the deck from being computed.
 [[nodiscard]] std::vector<std::string> warnings(const Deck& deck);
 

@@ -41,9 +41,10 @@ void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>
       std::string name = names[e].name;
       std::ranges::replace_if(
           name, [](char c) { return c == '.' || c == '_'; }, ' ');
-      const io::Quantity top = in_micro({here, names[e].unit}), low = in_micro({beside, names[e].unit});
+      const io::Quantity low = in_micro({beside, names[e].unit});
+      const double top = low.unit == names[e].unit ? here : 1e6 * here;  // both in one unit
       words = fmt::format("{:.6g} {} ({} reaches {:.3g} {} there, {:.3g} {} at the frequencies beside it)",
-                          deck::from_si(resonances[k].speed, unit, deck::frequency), unit, name, top.value, top.unit,
+                          deck::from_si(resonances[k].speed, unit, deck::frequency), unit, name, top, low.unit,
                           low.value, low.unit);
     }
     if (!words.empty()) all.push_back(words);
