@@ -143,7 +143,7 @@ void put_criticality(io::Bifurcation& b, double value, double uncertainty, const
   if (!std::isfinite(value)) {
     b.criticality_by = by + " could not be computed";
   } else if (!std::isfinite(uncertainty)) {
-    b.criticality_by = by + " is known without an error bar";
+    b.criticality_by = by + " has no error bar";
   } else if (!decided(value, uncertainty)) {
     b.criticality_by = by + " has an error bar that contains zero";
   } else {
