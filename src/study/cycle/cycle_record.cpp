@@ -223,11 +223,12 @@ void CycleRecord::warn_of_unknown(io::StudySummary& summary) const {
     if (count[k] < 0) places.push_back(at[k]);
   if (places.empty()) return;
   const auto [least, most] = std::ranges::minmax(places);
-  summary.warnings.push_back(
-      fmt::format("the search for multipliers did not converge at {} of {} points, {:.6g} to {:.6g} {}: whether the "
-                  "motion is stable "
-                  "there is not known (-monodromy_eps_max_it, -monodromy_eps_ncv)",
-                  places.size(), table_.rows(), least, most, unit_));
+  const std::string where =
+      least == most ? fmt::format("{:.6g} {}", least, unit_) : fmt::format("{:.6g} to {:.6g} {}", least, most, unit_);
+  summary.warnings.push_back(fmt::format(
+      "the search for multipliers did not converge at {} of {} points, {}: whether the motion is stable there is not "
+      "known (-monodromy_eps_max_it, -monodromy_eps_ncv)",
+      places.size(), table_.rows(), where));
 }
 
 bool CycleRecord::one_sided() const {
