@@ -33,8 +33,8 @@ private:
     std::unique_ptr<film::StateInverse> inverse;
     Eigen::ArrayXd state, residual;  // scales of its states and rows here, which a parameter may change
   };
-  /// answer(film, r, y) of the columns of each film among those of all: y = answer / its scales of states, r times
-  /// those of its rows; transposed, these change places.
+  /// Calls answer(film, right, found) for the columns of each film. `right` is r times the scales of the film's rows,
+  /// and y is `found` divided by the scales of its states. Transposed, the two scales change places.
   template <class Scalar, class Answer>
   void in_scales(std::span<const Scalar> r, std::span<Scalar> y, bool transposed, Answer&& answer);
   /// Its derivatives at the state that was evaluated last.

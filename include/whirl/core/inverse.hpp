@@ -16,9 +16,9 @@ template <class Matrix>
 template <class Derivatives>
 class ExactInverse;
 
-/// Inverse of A = alpha dF/ds + sigma dF/d(ds/dt), of rows and states s that stand on the ranks of one communicator,
-/// good to precondition with. `Derivatives` says where those of F come from. Columns [this rank's rows x columns] stand
-/// one behind the other. All members but exact() are collective.
+/// An inverse of A = alpha dF/ds + sigma dF/d(ds/dt), good to precondition with. The states s and the rows of F stand
+/// on the ranks of one communicator. `Derivatives` is what an inverse takes dF/ds and dF/d(ds/dt) from. Several columns
+/// [this rank's rows x columns] are given one behind the other. All members but exact() are collective.
 template <class Derivatives>
 class Inverse {
 public:

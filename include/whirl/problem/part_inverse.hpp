@@ -13,12 +13,12 @@ struct Point {
   Vec x, xdot;
 };
 
-/// Inverses of the own equations of all parts, A_pp of A = alpha dF/dx + sigma dF/d(dx/dt), in the scales of
-/// System::scales(). Rows are those of all parts on this rank, one after the other in the order of System::fields().
+/// Inverses of the own equations of all parts: of the block A_pp of A = alpha dF/dx + sigma dF/d(dx/dt), in the scales
+/// of System::scales(). Its rows are the parts' rows on this rank, part after part as in System::fields().
 /// They outlast a change of the parameter and end with the system. set() throws core::DomainError on all ranks outside
 /// the validity of a film.
 using PartInverse = core::Inverse<Point>;
-/// Complex frequencies are those of a system at rest: xdot is zero.
+/// At a complex frequency the system is at rest: xdot is zero.
 using ExactPartInverse = core::ExactInverse<Point>;
 
 }  // namespace whirl::problem

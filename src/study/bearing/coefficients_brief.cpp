@@ -88,9 +88,9 @@ io::BriefTable against_linear(const Values& v, const std::vector<CoefficientRow>
   io::BriefTable out{"Motion of finite amplitude",
                      keys_of_rows,
                      {},
-                     "distortion: root mean square of the force that the fitted K and C do not explain, over that of "
-                     "the whole force, for motion along x and along y; difference: largest deviation of K and C from "
-                     "those of a small vibration"};
+                     "distortion: the part of the force that the fitted K and C do not explain (ratio of root mean "
+                     "squares), for motion along x and along y; difference: the largest change of K and C against a "
+                     "small vibration"};
   out.columns.insert(out.columns.end(), {{"distortion x", "%"}, {"distortion y", "%"}, {"difference", "%"}});
   for (const CoefficientRow& at : places) {
     if (!at.enforced) continue;
