@@ -4,9 +4,9 @@
 #include <span>
 
 #include "film_part.hpp"
+#include "hub_rows.hpp"
 #include "rotor_part.hpp"
 #include "slope.hpp"
-#include "states.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
@@ -22,12 +22,11 @@ problem::SparseBlock block(Eigen::Index rows, Eigen::Index columns, const Entrie
   return out;
 }
 
-// Entries of the hub, zeros left out.
-problem::SparseBlock block(Eigen::Index n, Mat m) {
+// One component of the hub's rows, zeros left out.
+problem::SparseBlock block(Eigen::Index n, const HubRows& rows, double HubRows::Entry::*of) {
   Entries entries;
-  for_entries(m, [&](PetscInt row, PetscInt column, double value) {
-    if (value != 0) entries.emplace_back(row, column, value);
-  });
+  for (const HubRows::Entry& e : rows.entries())
+    if (e.*of != 0) entries.emplace_back(e.row, e.column, e.*of);
   return block(n, n, entries);
 }
 
@@ -40,7 +39,7 @@ RotorSystem::MachineBlocks::MachineBlocks(RotorSystem& system) : system_(system)
 
 void RotorSystem::MachineBlocks::rebuild() {
   const RotorSystem& system = system_;
-  const RotorPart::Matrices& m = system.hub_->matrices();
+  const HubRows& linear = system.hub_->linear();
   const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
   Entries b, c;
   Eigen::Index ports = 0;
@@ -58,11 +57,11 @@ void RotorSystem::MachineBlocks::rebuild() {
     ports += k;
   }
   by_speed_.clear();
-  for (const Mat slope : {system.hub_->by_speed().at_rest.get(), system.hub_->by_speed().rates.get()})
-    if (slope) by_speed_.push_back(block(n, slope));
-  l1_ = block(n, m.rates.get());
-  l0_at_rest_ = block(n, m.at_rest.get());
-  gyroscopic_ = block(n, m.turning.get());
+  if (const HubRows* slope = system.hub_->by_speed())
+    for (const auto of : {&HubRows::Entry::at_rest, &HubRows::Entry::rates}) by_speed_.push_back(block(n, *slope, of));
+  l1_ = block(n, linear, &HubRows::Entry::rates);
+  l0_at_rest_ = block(n, linear, &HubRows::Entry::at_rest);
+  gyroscopic_ = block(n, linear, &HubRows::Entry::turning);
   // All of L0 with one pattern, so that it follows the speed by its values alone.
   l0_ = l0_at_rest_ + gyroscopic_;
   l0_at_rest_ = problem::SparseBlock(0.0 * l0_ + l0_at_rest_);

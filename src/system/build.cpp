@@ -101,8 +101,6 @@ void RotorSystem::set_train(Train train) {
   for (std::size_t k = 0; k < films.size(); ++k) bearings_[change.films[k]].part = std::move(films[k]);
   hub_->take(change, std::move(rotor));
   const bool matrices = change.shaft || change.damping;
-  if (matrices && j_at_rest_) fill_constant_parts();
-  if (matrices) hub_entries_.clear();
   if (blocks_ && matrices) blocks_->rebuild();
   if (rest_) rest_->follow_train();
   slope_.reset();
@@ -110,8 +108,7 @@ void RotorSystem::set_train(Train train) {
 
 void RotorSystem::prepare() {
   if (!hub_->follow(speed_)) return;
-  if (j_at_rest_) hub_->set_joints(j_at_rest_.get(), j_rates_.get());
-  hub_entries_.clear();
+  if (lossy_) set_loss(loss_);
   if (blocks_) blocks_->rebuild();
 }
 
@@ -175,48 +172,6 @@ void RotorSystem::share_out_own_states() {
     part.hold(begin, end, hub_->rows(), gathered, static_cast<int>(i) % size == rank);
     gathered += part.share().seen.size();
   }
-}
-
-// The parts of the Jacobian that do not change with the state, all in the pattern of make_jacobian(): so a Jacobian is
-// a sum of arrays plus the few entries of the films.
-void RotorSystem::make_constant_parts() {
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local_size(), 1)), 0);
-  for (const Part* part : parts()) part->count_entries(count);
-  // Own states act on the coordinates of their ports, and ports on each other.
-  for (const Bearing& b : bearings_) {
-    PetscInt ends = 0;
-    for (const PortEnds& port : b.part->ports()) ends += static_cast<PetscInt>(port.size());
-    for (const PortEnds& port : b.part->ports())
-      for (const auto& [q, side] : port)
-        if (hub_->owns(q)) count[static_cast<std::size_t>(2 * (q - hub_->begin()))] += b.part->count() + 2 * ends;
-  }
-  for (PetscInt& c : count) c = std::min(c, size());
-  for (core::Matrix* j : {&j_at_rest_, &j_gyroscopic_, &j_rates_}) *j = core::make_matrix(comm_, local_size(), count);
-  fill_constant_parts();
-}
-
-// Every part sets every entry, if need be to zero.
-void RotorSystem::fill_constant_parts() {
-  const auto fill = [&](Mat j, double at_rest, double gyroscopic, double rates) {
-    PetscBool filled = PETSC_FALSE;
-    check(MatAssembled(j, &filled));
-    if (filled) check(MatZeroEntries(j));
-    hub_->add(j, at_rest, gyroscopic, rates);
-    if (!filled) return add_films(j, false, 0, 0);
-    check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
-  };
-  fill(j_at_rest_.get(), 1, 0, 0);
-  fill(j_gyroscopic_.get(), 0, 1, 0);
-  fill(j_rates_.get(), 0, 0, 1);
-  loss_left_ = false;
-}
-
-core::Matrix RotorSystem::make_jacobian() {
-  if (!j_at_rest_) make_constant_parts();
-  core::Matrix j;
-  check(MatDuplicate(j_at_rest_.get(), MAT_DO_NOT_COPY_VALUES, j.put()));
-  return j;
 }
 
 }  // namespace whirl::system

@@ -8,11 +8,17 @@ namespace whirl::system {
 
 using core::check;
 
+const HubRows& RotorSystem::hub_rows() const {
+  return lossy_ ? *lossy_ : hub_->linear();
+}
+
 template <class Entries>
-void RotorSystem::list_films(Entries& out, bool values, double alpha, double sigma) const {
+void RotorSystem::list(Entries& out, bool films, double alpha, double sigma) const {
+  for (const HubRows::Entry& e : hub_rows().entries())
+    out.add(e.row, e.column, alpha * (e.at_rest + speed_ * e.turning) + sigma * e.rates);
   static const film::Response none;
   for (const Bearing& b : bearings_) {
-    const film::Response& r = values ? b.part->journal() : none;
+    const film::Response& r = films ? b.part->journal() : none;
     const std::vector<PortEnds>& ports = b.part->ports();
     for (std::size_t d = 0; d < ports.size(); ++d)
       for (const auto& [row, to] : ports[d]) {
@@ -23,49 +29,37 @@ void RotorSystem::list_films(Entries& out, bool values, double alpha, double sig
             out.add(2 * row, 2 * column + 1, -alpha * to * side * r.d_velocity[d][e]);
           }
       }
-    b.part->add(out, values, alpha, sigma);
+    b.part->add(out, films, alpha, sigma);
   }
 }
 
-void RotorSystem::add_films(Mat j, bool values, double alpha, double sigma) {
-  film_entries_.begin(j);
-  list_films(film_entries_, values, alpha, sigma);
-  film_entries_.end();
+core::Matrix RotorSystem::make_jacobian() {
+  if (!pattern_) {
+    problem::Entries places;
+    places.begin();
+    list(places, false, 0, 0);
+    pattern_ = places.matrix(comm_, local_size());
+  }
+  core::Matrix j;
+  check(MatDuplicate(pattern_.get(), MAT_DO_NOT_COPY_VALUES, j.put()));
+  return j;
 }
 
-// All states of the hub come before those of films, so that its matrices by themselves number them as the system does.
-void RotorSystem::list_hub() {
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(hub_->rows(), 1)), 0);
-  hub_->count_entries(count);
-  for (PetscInt& c : count) c = std::min(c, 2 * n_);
-  core::Matrix m[3];
-  for (int k = 0; k < 3; ++k) {
-    m[k] = core::make_matrix(comm_, hub_->rows(), count);
-    hub_->add(m[k].get(), k == 0 ? 1 : 0, k == 1 ? 1 : 0, k == 2 ? 1 : 0);
-    check(MatAssemblyBegin(m[k].get(), MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(m[k].get(), MAT_FINAL_ASSEMBLY));
-  }
-  for (PetscInt i = 2 * hub_->begin(); i < 2 * hub_->end(); ++i) {
-    PetscInt n = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values[3];
-    for (int k = 0; k < 3; ++k) check(MatGetRow(m[k].get(), i, &n, &columns, &values[k]));
-    for (PetscInt e = 0; e < n; ++e) hub_entries_.push_back({i, columns[e], values[0][e], values[1][e], values[2][e]});
-    for (int k = 0; k < 3; ++k) check(MatRestoreRow(m[k].get(), i, &n, &columns, &values[k]));
-  }
+void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
+  prepare();
+  const bool films = alpha != 0 || n_own_ > 0;
+  if (films) evaluate_films(x, xdot, film::Need::tangents);
+  check(MatZeroEntries(j));
+  stream_.begin(j);
+  list(stream_, films, alpha, sigma);
+  stream_.end();
 }
 
 bool RotorSystem::entries(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, problem::Entries& out) {
-  if (n_own_ == 0) return false;
   prepare();
   evaluate_films(x, xdot, film::Need::tangents);
-  int listed = hub_->rows() == 0 || !hub_entries_.empty();
-  MPI_Allreduce(MPI_IN_PLACE, &listed, 1, MPI_INT, MPI_LAND, comm_);
-  if (!listed) list_hub();
   out.begin();
-  for (const HubEntry& e : hub_entries_)
-    out.add(e.row, e.column, alpha * (e.at_rest + speed_ * e.gyroscopic) + sigma * e.rates);
-  list_films(out, true, alpha, sigma);
+  list(out, true, alpha, sigma);
   return true;
 }
 

@@ -131,15 +131,6 @@ void FilmPart::speed_derivative(const Instant& /*at*/, double* f) const {
   if (rows() > 0) std::copy(response_.d_speed.begin(), response_.d_speed.end(), f);
 }
 
-void FilmPart::count_entries(std::span<PetscInt> count) const {
-  for (const film::Places* places : {&share_.d_states, &share_.d_rates})
-    film::for_entries(share_, *places, {},
-                      [&](int row, int, double) { ++count[static_cast<std::size_t>(row_ + row)]; });
-  PetscInt inputs = 0;  // positions and velocities
-  for (const PortEnds& port : ports_) inputs += 2 * static_cast<PetscInt>(port.size());
-  for (PetscInt k = row_; k < row_ + rows(); ++k) count[static_cast<std::size_t>(k)] += inputs;
-}
-
 template <class Entries>
 void FilmPart::add(Entries& j, bool values, double alpha, double sigma) const {
   if (rows() == 0) return;

@@ -63,7 +63,6 @@ public:
   void scales(double* states, double* rows) const override;
   void residual(const Instant& at, double* f) const override;
   void speed_derivative(const Instant& at, double* f) const override;
-  void count_entries(std::span<PetscInt> count) const override;
   /// j += alpha times the derivatives of its rows in states and journal, and of its forces in its states; sigma times
   /// those in rates. Without `values` their places alone.
   template <class Entries>  // core::EntryStream or problem::Entries

@@ -3,23 +3,11 @@
 #include <algorithm>
 
 #include "rotor_part.hpp"
-#include "states.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
 
 using core::check;
-
-namespace {
-
-void assemble(std::initializer_list<Mat> all) {
-  for (Mat m : all) {
-    check(MatAssemblyBegin(m, MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(m, MAT_FINAL_ASSEMBLY));
-  }
-}
-
-}  // namespace
 
 // Coordinates of both ends of all elements.
 void RotorPart::join() {
@@ -45,92 +33,44 @@ void RotorPart::join() {
   }
 }
 
-RotorPart::Joints RotorPart::joints_of(const Train& train, double speed, bool by_speed) const {
-  Joints out;
+HubRows RotorPart::joints_of(const Train& train, std::optional<double> speed, bool by_speed) const {
+  std::vector<HubRows::Entry> all;
+  const auto add = [&](PetscInt i, PetscInt j, double stiffness, double damping, double mass) {
+    all.push_back({2 * i, 2 * j, stiffness});
+    all.push_back({2 * i, 2 * j + 1, damping, 0, mass});
+  };
   for (std::size_t i = 0; i < pedestals_.size(); ++i)
     for (std::size_t d = 0; d < 2; ++d) {
       const Support& s = train.supports[i];
-      if (const PetscInt row = pedestals_[i][d]; row >= 0 && owns(row)) {
-        auto& at = out[{row, row}];
-        if (!by_speed) at = {s.stiffness[d], s.damping[d], s.mass[d]};
-      }
+      const double held = by_speed ? 0 : 1;
+      if (const PetscInt row = pedestals_[i][d]; row >= 0 && owns(row))
+        add(row, row, held * s.stiffness[d], held * s.damping[d], held * s.mass[d]);
     }
   for (std::size_t e = 0; e < ends_.size(); ++e) {
-    const ElementCurve::At at = ElementCurve(train.elements[e]).at(speed);
+    ElementCurve::At at;
+    if (speed) at = ElementCurve(train.elements[e]).at(*speed);
     const ElementCoefficients& c = by_speed ? at.by_speed : at.value;
     for (std::size_t d = 0; d < ends_[e].size(); ++d)
       for (const auto& [row, to] : ends_[e][d])
         for (std::size_t f = 0; owns(row) && f < ends_[e].size(); ++f)
           for (const auto& [column, side] : ends_[e][f]) {
-            auto& sum = out[{row, column}];
             const std::size_t k = 4 * d + f;
-            sum[0] += to * side * c.stiffness[k];
-            sum[1] += to * side * c.damping[k];
-            sum[2] += to * side * c.mass[k];
+            add(row, column, to * side * c.stiffness[k], to * side * c.damping[k], to * side * c.mass[k]);
           }
   }
-  return out;
-}
-
-void RotorPart::find_base() {
-  base_ = places();
-  for (auto& [place, base] : base_) {
-    const auto [i, j] = place;
-    check(MatGetValue(matrices_.at_rest.get(), 2 * i, 2 * j, &base[0]));
-    check(MatGetValue(matrices_.at_rest.get(), 2 * i, 2 * j + 1, &base[1]));
-    check(MatGetValue(matrices_.rates.get(), 2 * i, 2 * j + 1, &base[2]));
-  }
-}
-
-RotorPart::Joints RotorPart::places() const {
-  Joints out;
-  for (const auto& rows : pedestals_)
-    for (const PetscInt row : rows)
-      if (row >= 0 && owns(row)) out[{row, row}] = {};
-  for (const std::vector<Ends>& ends : ends_)
-    for (const Ends& to : ends)
-      for (const auto& [row, by] : to)
-        for (std::size_t f = 0; owns(row) && f < ends.size(); ++f)
-          for (const auto& [column, side] : ends[f]) out[{row, column}] = {};
-  return out;
+  return HubRows(std::move(all));
 }
 
 bool RotorPart::follow(double speed) {
   if (speed_ && (*speed_ == speed || !varies_)) return false;
-  Joints joints = joints_of(train_, speed, false);
+  const HubRows joints = joints_of(train_, speed, false);
   varies_ = std::any_of(train_.elements.begin(), train_.elements.end(),
                         [](const Element& e) { return ElementCurve(e).varies(); });
-  joints_ = std::move(joints);
-  if (varies_) by_speed_ = matrices_of(joints_of(train_, speed, true), 1);
+  linear_.set(base_, joints);
+  if (varies_) by_speed_ = joints_of(train_, speed, true);
   speed_ = speed;
-  set_joints(matrices_.at_rest.get(), matrices_.rates.get());
   update_load();
   return true;
-}
-
-void RotorPart::set_joints(Mat at_rest, Mat rates) const {
-  for (const auto& [place, joint] : joints_) {
-    const auto [i, j] = place;
-    const std::array<double, 3>& base = base_.at(place);
-    check(MatSetValue(at_rest, 2 * i, 2 * j, base[0] + joint[0], INSERT_VALUES));
-    check(MatSetValue(at_rest, 2 * i, 2 * j + 1, base[1] + joint[1], INSERT_VALUES));
-    check(MatSetValue(rates, 2 * i, 2 * j + 1, base[2] + joint[2], INSERT_VALUES));
-  }
-  assemble({at_rest, rates});
-}
-
-RotorPart::Matrices RotorPart::matrices_of(const Joints& joints, double factor) const {
-  StateEntries rates, at_rest;
-  for (const auto& [place, joint] : joints) {
-    const auto [i, j] = place;
-    at_rest.add(2 * i, 2 * j, factor * joint[0]);
-    at_rest.add(2 * i, 2 * j + 1, factor * joint[1]);
-    rates.add(2 * i, 2 * j + 1, factor * joint[2]);
-  }
-  Matrices out;
-  out.at_rest = at_rest.matrix(comm_, end_ - begin_);
-  out.rates = rates.matrix(comm_, end_ - begin_);
-  return out;
 }
 
 void RotorPart::add_rest(const Train& train, const Motions& rest, bool by_speed, double factor,

@@ -40,8 +40,6 @@ public:
   virtual void residual(const Instant& at, double* f) const = 0;
   /// f [rows()] = their derivatives in the speed, likewise.
   virtual void speed_derivative(const Instant& at, double* f) const = 0;
-  /// Adds how many entries its rows here have in the Jacobian [local rows].
-  virtual void count_entries(std::span<PetscInt> count) const = 0;
 };
 
 }  // namespace whirl::system

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "states.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/contract/film.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -52,7 +51,7 @@ RotorPart::RotorPart(MPI_Comm comm, const Train& train, bool on_first)
   begin_ = rank > with_pedestals_on ? n_ : begin;
   end_ = rank >= with_pedestals_on ? n_ : end;
   join();
-  make_matrices();
+  base_ = linear_ = rows_of(*rotor_);
   weights_ = load_of(*rotor_, weights_of(train_));
   update_load();
   unbalance_ = unbalance_of(*rotor_, train_.unbalance);
@@ -73,10 +72,8 @@ void RotorPart::take(const TrainChange& change, std::unique_ptr<rotor::Rotor> ro
     rotor_ = std::move(rotor);
   else if (change.damping)
     rotor_->set_stiffness_damping(train_.rotor.stiffness_damping);
-  if (change.shaft || change.damping)
-    make_matrices();
-  else if (change.joints)
-    speed_.reset();
+  if (change.shaft || change.damping) base_ = linear_ = rows_of(*rotor_);
+  if (change.shaft || change.damping || change.joints) speed_.reset();
   if (change.load) weights_ = load_of(*rotor_, weights_of(train_));
   if (change.load || change.joints) update_load();
   if (change.unbalance) unbalance_ = unbalance_of(*rotor_, train_.unbalance);
@@ -88,38 +85,46 @@ core::Matrix RotorPart::here(Mat of_rotor) const {
   return core::Matrix(of_rotor);
 }
 
-RotorPart::Matrices RotorPart::matrices_of(const rotor::Rotor& rotor) const {
-  StateEntries rates, at_rest, turning;
+HubRows RotorPart::rows_of(const rotor::Rotor& rotor) const {
+  using Entry = HubRows::Entry;
+  std::vector<Entry> all;
+  // Row i and column j of a matrix stand at each * i and each * j + rate among the states.
+  const auto take = [&](const core::Matrix& m, double Entry::*to, PetscInt each, PetscInt rate) {
+    for_entries(here(m.get()).get(), [&](PetscInt i, PetscInt j, double value) {
+      all.push_back({each * i, each * j + rate});
+      all.back().*to = value;
+    });
+  };
   if (const auto& of = rotor.states()) {
-    rates.add(here(of->rates.get()).get());
-    at_rest.add(here(of->at_rest.get()).get());
-    turning.add(here(of->turning.get()).get());
+    take(of->rates, &Entry::rates, 1, 0);
+    take(of->at_rest, &Entry::at_rest, 1, 0);
+    take(of->turning, &Entry::turning, 1, 0);
   } else {
     const rotor::Matrices& m = rotor.matrices();
-    rates.add(here(m.mass.get()).get(), 1);
-    at_rest.add(here(m.stiffness.get()).get(), 0);
-    at_rest.add(here(m.damping.get()).get(), 1);
-    turning.add(here(m.gyroscopic.get()).get(), 1);
-    if (m.circulatory) turning.add(here(m.circulatory.get()).get(), 0);
+    take(m.mass, &Entry::rates, 2, 1);
+    take(m.stiffness, &Entry::at_rest, 2, 0);
+    take(m.damping, &Entry::at_rest, 2, 1);
+    take(m.gyroscopic, &Entry::turning, 2, 1);
+    if (m.circulatory) take(m.circulatory, &Entry::turning, 2, 0);
   }
   for (PetscInt i = rotor.states() ? std::max(begin_, n_rotor_) : begin_; i < end_; ++i) {
-    rates.add(2 * i + 1, 2 * i, 1);
-    at_rest.add(2 * i + 1, 2 * i + 1, -1);
+    all.push_back({2 * i + 1, 2 * i, 0, 0, 1});
+    all.push_back({2 * i + 1, 2 * i + 1, -1});
   }
-  // Room for joints, whose coefficients any place may have.
-  for (const auto& [place, none] : places()) {
-    const auto [i, j] = place;
-    rates.add(2 * i, 2 * j + 1, 0);
-    for (const PetscInt rate : {0, 1}) at_rest.add(2 * i, 2 * j + rate, 0);
-  }
-  const PetscInt rows = end_ - begin_;
-  return {rates.matrix(comm_, rows), at_rest.matrix(comm_, rows), turning.matrix(comm_, rows)};
+  // Room for joints, whose coefficients any place may have. Without a speed none leaves its table.
+  const HubRows joints = joints_of(train_, std::nullopt, false);
+  for (const Entry& e : joints.entries()) all.push_back({e.row, e.column});
+  return HubRows(std::move(all));
 }
 
-void RotorPart::make_matrices() {
-  matrices_ = matrices_of(*rotor_);
-  find_base();
-  speed_.reset();
+// Of the rotor alone: pedestals behind it have no loss. The other plane: +K y in rows of x, -K x in rows of y.
+HubRows RotorPart::with_loss(double damping, double turning) const {
+  std::vector<HubRows::Entry> all = linear_.entries();
+  for_entries(here(rotor_->matrices().stiffness.get()).get(), [&](PetscInt i, PetscInt j, double k) {
+    all.push_back({2 * i, 2 * j + 1, damping * k});
+    all.push_back({2 * i, 2 * (j ^ 1), (i % 2 == 0 ? 1 : -1) * turning * k});
+  });
+  return HubRows(std::move(all));
 }
 
 RotorPart::Weights RotorPart::weights_of(const Train& train) {
@@ -257,92 +262,27 @@ std::array<double, 2> RotorPart::unbalance_factors(const Instant& at) {
   return {inward * c + at.acceleration * s, inward * s - at.acceleration * c};
 }
 
-core::Vector RotorPart::own(Vec x) const {
-  core::Vector out = core::make_vector(comm_, rows(), PETSC_DETERMINE);
-  const core::ReadArray from(x);
-  const core::WriteArray to(out.get());
-  std::copy_n(from.data(), to.size(), to.data());
-  return out;
-}
-
-core::Vector RotorPart::products(const Matrices& m, const Instant& at) const {
-  const core::Vector x = own(at.x);
-  core::Vector sum = core::duplicate(x.get());
-  check(VecSet(sum.get(), 0.0));
-  if (m.turning) {
-    check(MatMult(m.turning.get(), x.get(), sum.get()));
-    check(VecScale(sum.get(), at.speed));
-  }
-  if (m.at_rest) check(MatMultAdd(m.at_rest.get(), x.get(), sum.get(), sum.get()));
-  if (m.rates) check(MatMultAdd(m.rates.get(), own(at.xdot).get(), sum.get(), sum.get()));
-  return sum;
-}
-
 void RotorPart::residual(const Instant& at, double* f) const {
-  const core::Vector sum = products(matrices_, at);
-  const core::ReadArray sa(sum.get());
+  std::fill_n(f, rows(), 0.0);
+  linear_.add_products(1, at.speed, at.x, at.xdot, f);
   const auto [c, s] = unbalance_factors(at);
-  for (PetscInt i = 0; i < sa.size(); ++i) {
+  for (PetscInt i = 0; i < rows(); ++i) {
     const auto row = static_cast<std::size_t>(2 * begin_ + i);
-    f[i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_.cosine[row] - s * unbalance_.sine[row];
+    f[i] -= load_[static_cast<std::size_t>(i)] + c * unbalance_.cosine[row] + s * unbalance_.sine[row];
   }
 }
 
 void RotorPart::speed_derivative(const Instant& at, double* f) const {
-  const core::Vector x = own(at.x), sum = core::duplicate(x.get());
-  check(MatMult(matrices_.turning.get(), x.get(), sum.get()));
-  if (by_speed_.at_rest) {
-    check(MatMultAdd(by_speed_.at_rest.get(), x.get(), sum.get(), sum.get()));
-    check(MatMultAdd(by_speed_.rates.get(), own(at.xdot).get(), sum.get(), sum.get()));
-  }
+  std::fill_n(f, rows(), 0.0);
+  linear_.add_products(0, 1, at.x, nullptr, f);
+  if (varies_) by_speed_.add_products(1, 0, at.x, at.xdot, f);
   const std::vector<double> lacking = load_by_speed();
-  const core::ReadArray sa(sum.get());
   const double force = at.forcing ? 2 * at.speed : 0.0, c = force * std::cos(at.angle), s = force * std::sin(at.angle);
-  for (PetscInt i = 0; i < sa.size(); ++i) {
+  for (PetscInt i = 0; i < rows(); ++i) {
     const auto row = static_cast<std::size_t>(2 * begin_ + i);
-    f[i] = sa[i] - c * unbalance_.cosine[row] - s * unbalance_.sine[row];
+    f[i] -= c * unbalance_.cosine[row] + s * unbalance_.sine[row];
     if (!lacking.empty()) f[i] -= lacking[static_cast<std::size_t>(i)];
   }
-}
-
-void RotorPart::count_entries(std::span<PetscInt> count) const {
-  // A journal and its slopes, displacements and velocities, and the pedestals of all bearings at one node.
-  PetscInt pedestals = 1;
-  for (const Support& s : train_.supports)
-    pedestals = std::max<PetscInt>(
-        pedestals, std::count_if(train_.supports.begin(), train_.supports.end(),
-                                 [&s](const Support& t) { return t.has_pedestal && t.node == s.node; }));
-  const PetscInt of_films = 8 + 4 * pedestals;
-  for (PetscInt i = 0; i < rows(); ++i) {
-    PetscInt total = i % 2 == 0 ? of_films : 0;
-    for (const core::Matrix* m : {&matrices_.rates, &matrices_.at_rest, &matrices_.turning}) {
-      PetscInt k = 0;
-      check(MatGetRow(m->get(), 2 * begin_ + i, &k, nullptr, nullptr));
-      total += k;
-      check(MatRestoreRow(m->get(), 2 * begin_ + i, &k, nullptr, nullptr));
-    }
-    count[static_cast<std::size_t>(i)] += total;
-  }
-}
-
-void RotorPart::add(Mat j, double at_rest, double gyroscopic, double rates) const {
-  for (const auto& [m, factor] :
-       {std::pair{matrices_.at_rest.get(), at_rest}, std::pair{matrices_.turning.get(), gyroscopic},
-        std::pair{matrices_.rates.get(), rates}})
-    for_entries(m, [j, by = factor](PetscInt row, PetscInt column, double value) {
-      check(MatSetValue(j, row, column, by * value, ADD_VALUES));
-    });
-  if (loss_ != std::array<double, 2>{}) add_loss(j, at_rest);
-}
-
-// Of the rotor alone: pedestals behind it have no loss.
-void RotorPart::add_loss(Mat j, double at_rest) const {
-  for_entries(here(rotor_->matrices().stiffness.get()).get(), [&](PetscInt i, PetscInt column, double value) {
-    const double k = at_rest * value;
-    check(MatSetValue(j, 2 * i, 2 * column + 1, loss_[0] * k, ADD_VALUES));
-    // The other plane: +K y in rows of x, -K x in rows of y.
-    check(MatSetValue(j, 2 * i, 2 * (column ^ 1), (i % 2 == 0 ? 1 : -1) * loss_[1] * k, ADD_VALUES));
-  });
 }
 
 }  // namespace whirl::system

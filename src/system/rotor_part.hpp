@@ -2,12 +2,12 @@
 // The hub of a machine: the rotor with its pedestals.
 
 #include <array>
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "change.hpp"
+#include "hub_rows.hpp"
 #include "part.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/rotor/rotor.hpp"
@@ -30,19 +30,14 @@ namespace whirl::system {
 /// every rank.
 class RotorPart final : public Part {
 public:
-  /// Derivatives of the rows in states and rates, pedestals behind the rotor: dF/d(dx/dt), dF/dx at rest and what the
-  /// speed is multiplied with.
-  struct Matrices {
-    core::Matrix rates, at_rest, turning;
-  };
   /// Force of unbalance per Omega^2 on the rows [2 coordinates()], whole on every rank.
   struct Unbalances {
     std::vector<double> cosine, sine;
   };
   /// Derivatives in a parameter of the numbers that the rows are made of: of those that depend on it.
   struct Rates {
-    std::optional<Matrices> matrices, joints;
-    std::vector<double> load;  // as load(), or empty
+    std::optional<HubRows> rows;  // the same on all ranks whether there are some
+    std::vector<double> load;     // as load(), or empty
     std::optional<Unbalances> unbalance;
   };
 
@@ -59,15 +54,19 @@ public:
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// Coordinates of the pedestal of a bearing in x and y; -1: it has none.
   [[nodiscard]] const std::array<PetscInt, 2>& pedestal(std::size_t bearing) const { return pedestals_[bearing]; }
-  [[nodiscard]] const Matrices& matrices() const { return matrices_; }
+  /// The rows without loads, pedestals behind the rotor.
+  [[nodiscard]] const HubRows& linear() const { return linear_; }
+  /// The same for a vibration of one frequency with hysteresis: the rotor's K times `damping` [s] on velocities and K x
+  /// [[0, 1], [-1, 0]] times `turning` on displacements. At the same places. Collective.
+  [[nodiscard]] HubRows with_loss(double damping, double turning) const;
   /// Weight and static load on this rank's rows, and what elements away from their place of rest lack [N].
   [[nodiscard]] const std::vector<double>& load() const { return load_; }
 
   /// The joints at this speed from now on, true if they are others than before. Throws core::DomainError beyond the
   /// table of an element, and then nothing has changed. Collective.
   bool follow(double speed);
-  /// What joints change with the speed: derivatives of `rates` and `at_rest`, empty where none changes.
-  [[nodiscard]] const Matrices& by_speed() const { return by_speed_; }
+  /// Derivatives of linear() by the speed, but for what is turning: those of joints; null where none changes.
+  [[nodiscard]] const HubRows* by_speed() const { return varies_ ? &by_speed_ : nullptr; }
   /// Motions at an element: its node less its other end, along x, y, dx/dz and dy/dz.
   using Motions = std::vector<std::array<double, 4>>;
   /// Where elements are without force if they carry no static load [elements].
@@ -91,15 +90,6 @@ public:
   void scales(double* states, double* rows) const override;
   void residual(const Instant& at, double* f) const override;
   void speed_derivative(const Instant& at, double* f) const override;
-  void count_entries(std::span<PetscInt> count) const override;
-  /// j += at_rest dF/dx without what grows with speed (gyroscopic, circulatory), gyroscopic times that of unit speed,
-  /// rates times dF/d(dx/dt): all entries, if need be zero. Not assembled.
-  void add(Mat j, double at_rest, double gyroscopic, double rates) const;
-  /// From now on add() puts the rotor's K times `damping` [s] onto velocities and K x [[0, 1], [-1, 0]] times `turning`
-  /// onto displacements: what hysteresis does to a vibration of one frequency. The rows themselves stay.
-  void set_loss(double damping, double turning) { loss_ = {damping, turning}; }
-  /// Sets the entries of joints in the same matrices of the whole machine, which hold them already.
-  void set_joints(Mat at_rest, Mat rates) const;
 
   /// A rotor with other numbers; it counts. Collective.
   [[nodiscard]] std::unique_ptr<rotor::Rotor> make_rotor(const rotor::Options& options);
@@ -124,33 +114,21 @@ private:
     std::vector<StaticLoad> loads;
   };
   [[nodiscard]] static Weights weights_of(const Train& train);
-  /// j += at_rest times what set_loss() says.
-  void add_loss(Mat j, double at_rest) const;
-  /// Those of a rotor, zero at the pedestals. Collective, as are the others.
-  [[nodiscard]] Matrices matrices_of(const rotor::Rotor& rotor) const;
+  /// Those of a rotor, zero at the joints. Collective.
+  [[nodiscard]] HubRows rows_of(const rotor::Rotor& rotor) const;
   /// This rank's rows of a matrix of the rotor: all rows on the first rank if the rotor stands there.
   [[nodiscard]] core::Matrix here(Mat of_rotor) const;
-  void make_matrices();
   /// Coordinates that move one end of an element and how: its node +1, its other end -1.
   using Ends = std::vector<std::pair<PetscInt, double>>;
-  /// K, C and M by places (row, column) of coordinates, rows here.
-  using Joints = std::map<std::pair<PetscInt, PetscInt>, std::array<double, 3>>;
-  /// Those of a train at a speed, or their derivatives by it; all places, zeros too.
-  [[nodiscard]] Joints joints_of(const Train& train, double speed, bool by_speed) const;
-  /// Their places alone.
-  [[nodiscard]] Joints places() const;
+  /// K, C and M of the joints of a train at a speed, or their derivatives by it; zeros too, and without a speed zeros
+  /// of elements.
+  [[nodiscard]] HubRows joints_of(const Train& train, std::optional<double> speed, bool by_speed) const;
   void join();
-  void find_base();
-  [[nodiscard]] Matrices matrices_of(const Joints& joints, double factor) const;
   /// += B K rest of the elements that carry no static load, K of `train` at the speed of follow().
   void add_rest(const Train& train, const Motions& rest, bool by_speed, double factor, std::vector<double>& rows) const;
   void update_load();
   [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
   [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
-  /// What the matrices give on this rank's rows; those that are empty give nothing. Collective.
-  [[nodiscard]] core::Vector products(const Matrices& m, const Instant& at) const;
-  /// This rank's states of the hub. Collective.
-  [[nodiscard]] core::Vector own(Vec x) const;
 
   MPI_Comm comm_;
   const Train& train_;
@@ -159,16 +137,14 @@ private:
   std::unique_ptr<rotor::Rotor> rotor_;
   std::vector<std::array<PetscInt, 2>> pedestals_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;
-  Matrices matrices_;
+  HubRows base_, linear_;               // of the rotor at all places, and with the joints
   std::vector<double> weights_, load_;  // load_ with what elements lack
-  Joints base_, joints_;                // of the rotor at the places of joints; joints
-  Matrices by_speed_;
-  std::optional<double> speed_;  // of joints_, empty where they follow from another train
+  HubRows by_speed_;
+  std::optional<double> speed_;  // of the joints, empty where they follow from another train
   bool varies_ = false;          // joints with the speed
   std::vector<std::vector<Ends>> ends_;
   Motions rest_, rest_rate_;
   Unbalances unbalance_;
-  std::array<double, 2> loss_{};  // of velocities, of displacements across the planes
 };
 
 }  // namespace whirl::system

@@ -1,7 +1,6 @@
 // How the rows of rotor and pedestals change with a parameter other than the speed.
 
 #include "rotor_part.hpp"
-#include "states.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
@@ -50,14 +49,7 @@ RotorPart::Rates RotorPart::rates(const TrainChange& change, const Train& minus,
   if (change.shaft) {
     const auto below = make_rotor(minus.rotor), above = make_rotor(plus.rotor);
     check_pattern(*above);
-    out.matrices = matrices_of(*above);
-    const Matrices less = matrices_of(*below);
-    for (const auto& [m, n] : {std::pair{out.matrices->rates.get(), less.rates.get()},
-                               std::pair{out.matrices->at_rest.get(), less.at_rest.get()},
-                               std::pair{out.matrices->turning.get(), less.turning.get()}}) {
-      check(MatAXPY(m, -1, n, DIFFERENT_NONZERO_PATTERN));
-      check(MatScale(m, 1 / step));
-    }
+    out.rows = HubRows::combined(1 / step, rows_of(*above), -1 / step, rows_of(*below));
     const Unbalances a = unbalance_of(*below, minus.unbalance), b = unbalance_of(*above, plus.unbalance);
     out.unbalance = {rates_of(a.cosine, b.cosine), rates_of(a.sine, b.sine)};
     out.load = rates_of(load_of(*below, weights_of(minus)), load_of(*above, weights_of(plus)));
@@ -71,19 +63,19 @@ RotorPart::Rates RotorPart::rates(const TrainChange& change, const Train& minus,
     if (change.unbalance) out.unbalance = unbalance_of(*rotor_, rate_of(minus.unbalance, plus.unbalance, step));
     // C = value K
     if (change.damping) {
-      StateEntries damping;
-      damping.add(here(rotor_->matrices().stiffness.get()).get(), 1);
-      out.matrices.emplace();
-      out.matrices->at_rest = damping.matrix(comm_, end_ - begin_);
-      check(MatScale(out.matrices->at_rest.get(), rate(minus.rotor.stiffness_damping, plus.rotor.stiffness_damping)));
+      const double by = rate(minus.rotor.stiffness_damping, plus.rotor.stiffness_damping);
+      std::vector<HubRows::Entry> all;
+      for_entries(here(rotor_->matrices().stiffness.get()).get(), [&](PetscInt i, PetscInt j, double k) {
+        all.push_back({2 * i, 2 * j + 1, by * k});
+      });
+      out.rows = HubRows(std::move(all));
     }
   }
   if (change.joints) {
     core::require(speed_.has_value(), "joints at the speed");
-    Joints joints = joints_of(plus, *speed_, false);
-    for (const auto& [place, below] : joints_of(minus, *speed_, false))
-      for (std::size_t k = 0; k < 3; ++k) joints[place][k] -= below[k];
-    out.joints = matrices_of(joints, 1 / step);
+    const HubRows joints =
+        HubRows::combined(1 / step, joints_of(plus, *speed_, false), -1 / step, joints_of(minus, *speed_, false));
+    out.rows = HubRows::combined(1, out.rows.value_or(HubRows()), 1, joints);
   }
   // What elements lack away from their place of rest.
   if (!rest_.empty()) {
@@ -104,12 +96,7 @@ void RotorPart::apply(const Rates& rates, const Instant& at, double* f) const {
     f[i] = rates.load.empty() ? 0.0 : -rates.load[at_row];
     if (rates.unbalance) f[i] -= c * rates.unbalance->cosine[all] + s * rates.unbalance->sine[all];
   }
-  for (const std::optional<Matrices>* m : {&rates.matrices, &rates.joints}) {
-    if (!*m) continue;
-    const core::Vector sum = products(**m, at);
-    const core::ReadArray sa(sum.get());
-    for (PetscInt i = 0; i < sa.size(); ++i) f[i] += sa[i];
-  }
+  if (rates.rows) rates.rows->add_products(1, at.speed, at.x, at.xdot, f);
 }
 
 }  // namespace whirl::system

@@ -92,20 +92,6 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   subtract(&film::Response::force, fa.data());
 }
 
-void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
-  prepare();
-  if (!j_at_rest_) make_constant_parts();
-  if (loss_left_) fill_constant_parts();
-  check(MatCopy(j_at_rest_.get(), j, SAME_NONZERO_PATTERN));
-  if (alpha != 1) check(MatScale(j, alpha));
-  if (alpha != 0) check(MatAXPY(j, alpha * speed_, j_gyroscopic_.get(), SAME_NONZERO_PATTERN));
-  if (alpha != 0 || n_own_ > 0) {
-    evaluate_films(x, xdot, film::Need::tangents);
-    add_films(j, true, alpha, sigma);
-  }
-  if (sigma != 0) check(MatAXPY(j, sigma, j_rates_.get(), SAME_NONZERO_PATTERN));
-}
-
 void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
   prepare_loads(true);
   if (varying_.train) return slope().derivative(angle, x, xdot, f);
@@ -224,18 +210,13 @@ RotorSystem::Loss RotorSystem::loss_at(double frequency) const {
 }
 
 void RotorSystem::set_loss(const Loss& loss) {
-  hub_->set_loss(0, 0);
   prepare();
-  if (!j_at_rest_) make_constant_parts();  // in the pattern without
-  hub_->set_loss(loss.damping, loss.turning);
-  fill_constant_parts();
-  hub_entries_.clear();
+  loss_ = loss;
+  lossy_ = std::make_unique<const HubRows>(hub_->with_loss(loss.damping, loss.turning));
 }
 
 void RotorSystem::drop_loss() noexcept {
-  hub_->set_loss(0, 0);
-  hub_entries_.clear();
-  loss_left_ = true;
+  lossy_.reset();
 }
 
 PetscInt RotorSystem::local_size() const {

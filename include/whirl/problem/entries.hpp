@@ -1,12 +1,11 @@
 #pragma once
 // A linearisation entry by entry.
 
-#include <petscsystypes.h>
-
 #include <span>
 #include <vector>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/petsc.hpp"
 
 namespace whirl::problem {
 
@@ -33,6 +32,10 @@ public:
     core::require(values_.size() == places_.size(), "entries are listed in the same order in every pass");
     return values_;
   }
+
+  /// A matrix of zeros with these places, `local` rows and columns here; it may be filled by MatSetValuesCOO().
+  /// Collective.
+  [[nodiscard]] core::Matrix matrix(MPI_Comm comm, PetscInt local) const;
 
 private:
   bool placed_ = false;

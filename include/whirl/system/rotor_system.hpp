@@ -17,6 +17,7 @@
 namespace whirl::system {
 
 class FilmPart;
+class HubRows;
 class Part;
 class RotorPart;
 class RotorSystem;
@@ -242,10 +243,7 @@ private:
                                                                 const std::vector<std::size_t>& bearings);
   /// Rotor and pedestals, then the films.
   [[nodiscard]] std::vector<const Part*> parts() const;
-  void make_constant_parts();
-  void fill_constant_parts();
   void set_loss(const Loss& loss);
-  // The next jacobian() takes the loss out of the constant parts.
   void drop_loss() noexcept;
   /// Made when first wanted at this value of the parameter. Collective.
   [[nodiscard]] Slope& slope();
@@ -254,14 +252,12 @@ private:
   void subtract(const std::vector<std::array<double, 4>>& forces, double* rows) const;
   /// The same of one component of the films' responses.
   void subtract(std::array<double, 4> film::Response::*of, double* rows) const;
-  /// j += alpha times the derivatives of the film forces and rows as evaluated last, sigma times those in the rates;
-  /// without `values` zeros at their places. Collective: assembles j.
-  void add_films(Mat j, bool values, double alpha, double sigma);
-  /// The same into a list of entries or a stream.
+  /// The rows of rotor and pedestals that are linear, with the loss if there is one.
+  [[nodiscard]] const HubRows& hub_rows() const;
+  /// alpha dF/dx + sigma dF/d(dx/dt) with the films as evaluated last, into a list of entries or a stream: always the
+  /// same places. Without `films` theirs hold zeros.
   template <class Entries>
-  void list_films(Entries& out, bool values, double alpha, double sigma) const;
-  /// Entries of the hub in its rows here, likewise the constant parts. Collective.
-  void list_hub();
+  void list(Entries& out, bool films, double alpha, double sigma) const;
   [[nodiscard]] FilmInputs film_inputs(Vec x, Vec xdot);
   /// All films, each by the ranks that hold it: the parts then hold their rows here, and the bearings the responses of
   /// the journals, the same on all ranks. Collective.
@@ -310,16 +306,12 @@ private:
   std::unique_ptr<RotorPart> hub_;
   std::vector<Bearing> bearings_;
   std::vector<std::array<double, 2>> axes_;
-  PetscInt n_ = 0, n_own_ = 0, own_here_ = 0;        // coordinates; own states of films: all, on this rank
-  core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;  // constant parts of the Jacobian, made when first wanted
-  bool loss_left_ = false;                           // in j_at_rest_, though no more wanted
-  core::EntryStream film_entries_;                   // of the films in matrices of make_jacobian()'s pattern
-  struct HubEntry {
-    PetscInt row, column;
-    double at_rest, gyroscopic, rates;
-  };
-  std::vector<HubEntry> hub_entries_;  // made when first wanted
-  std::vector<PetscInt> wanted_;       // entries of a state that gather_inputs() gathers
+  PetscInt n_ = 0, n_own_ = 0, own_here_ = 0;  // coordinates; own states of films: all, on this rank
+  core::Matrix pattern_;                       // of the Jacobian, made when first wanted
+  core::EntryStream stream_;                   // of its entries
+  Loss loss_;
+  std::unique_ptr<const HubRows> lossy_;  // rows with the loss while it acts
+  std::vector<PetscInt> wanted_;          // entries of a state that gather_inputs() gathers
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   std::size_t journal_inputs_ = 0;  // before the own states among them: position and velocity of each end of each port
