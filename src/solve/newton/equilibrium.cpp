@@ -76,40 +76,13 @@ void EquilibriumProblem::residual(Vec u, Vec r) {
   for (PetscInt i = 0; i < fa.size(); ++i) ra[i] = fa[i] / s[i];
 }
 
-// Of parts it is filled when it is asked for, and from then on with every linearisation.
+// Filled when it is asked for, and from then on with every linearisation.
 Mat EquilibriumProblem::matrix() {
-  if (bordered_) return bordered_.get();
-  if (blocks_) {
-    std::vector<PetscInt> rows, columns;
-    for (const problem::Entries::Place& p : entries_.places()) {
-      rows.push_back(p.row);
-      columns.push_back(p.column);
-    }
-    const auto count = static_cast<PetscCount>(rows.size());
-    check(MatCreate(comm(), bordered_.put()));
-    PetscInt local = 0;
-    check(VecGetLocalSize(rows_.get(), &local));
-    check(MatSetSizes(bordered_.get(), local, local, PETSC_DETERMINE, PETSC_DETERMINE));
-    check(MatSetType(bordered_.get(), MATAIJ));
-    check(MatSetPreallocationCOO(bordered_.get(), count, rows.data(), columns.data()));
-    fill_bordered();
-    return bordered_.get();
-  }
-  PetscBool filled = PETSC_FALSE;
-  if (jacobian_) check(MatAssembled(jacobian_.get(), &filled));
-  if (!filled) return nullptr;
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(jacobian_.get(), &begin, &end));
-  const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
-  const PetscInt n = system_.size(), rows = end - begin + (last ? 1 : 0);
-  std::vector<PetscInt> count(static_cast<std::size_t>(rows), n + 1);
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    check(MatGetRow(jacobian_.get(), i, &k, nullptr, nullptr));
-    count[static_cast<std::size_t>(i - begin)] = k + 1;
-    check(MatRestoreRow(jacobian_.get(), i, &k, nullptr, nullptr));
-  }
-  bordered_ = core::make_matrix(comm(), rows, std::move(count));
+  if (bordered_ || !blocks_) return bordered_.get();
+  PetscInt local = 0;
+  check(VecGetLocalSize(rows_.get(), &local));
+  bordered_ = entries_.matrix(comm(), local);
+  fill_bordered();
   return bordered_.get();
 }
 
@@ -171,14 +144,9 @@ void EquilibriumProblem::list() {
 
 void EquilibriumProblem::linearise(Vec u, Vec row) {
   prepare(u);
-  if (PortElimination::serves(system_.fields()))
-    linearise_parts(row);
-  else
-    linearise_whole(row);
-}
-
-void EquilibriumProblem::linearise_parts(Vec row) {
   std::vector<problem::Field> parts = system_.fields();
+  const bool apart = PortElimination::keeps_apart(parts);
+  if (!apart) parts.resize(1);  // all is hub
   if (!row_) {
     for (core::Vector* v : {&row_, &rows_, &columns_}) *v = make_unknown();
     for (const auto& [to, from] :
@@ -205,48 +173,26 @@ void EquilibriumProblem::linearise_parts(Vec row) {
   if (!blocks_) {
     PetscInt local = 0;
     check(VecGetLocalSize(row_.get(), &local));
-    blocks_ = std::make_unique<PortMatrix>(std::make_shared<const PortLayout>(comm(), local, parts, entries_.places()));
+    if (!apart) bordered_ = entries_.matrix(comm(), local);
+    blocks_ =
+        std::make_unique<PortMatrix>(apart ? std::make_shared<const PortLayout>(comm(), local, parts, entries_.places())
+                                           : std::make_shared<const PortLayout>(bordered_.get(), parts));
   }
-  blocks_->take(entries_.values());
-  blocks_->scale(rows_.get(), columns_.get());
   if (bordered_) fill_bordered();
+  if (apart) {
+    blocks_->take(entries_.values());
+    blocks_->scale(rows_.get(), columns_.get());
+  } else {
+    blocks_->take(bordered_.get());
+  }
   factorised_ = exact_factorised_ = false;
   if (!ports_ && !exact_) {
-    auto inverse = system_.make_part_inverse();
+    auto inverse = apart ? system_.make_part_inverse() : nullptr;
     std::unique_ptr<PortElimination>& elimination = inverse && inverse->exact() == nullptr ? ports_ : exact_;
     elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
   }
   for (const PortElimination* elimination : {ports_.get(), exact_.get()})
     if (elimination && elimination->inverse()) elimination->inverse()->set({0, x_.get(), rest_.get()}, 1, 0);
-}
-
-void EquilibriumProblem::linearise_whole(Vec row) {
-  if (!jacobian_) jacobian_ = system_.make_jacobian();
-  system_.jacobian(0, x_.get(), rest_.get(), 1, 0, jacobian_.get());
-  (void)matrix();
-  system_.parameter_derivative(0, x_.get(), rest_.get(), f_.get());
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(jacobian_.get(), &begin, &end));
-  const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
-  const PetscInt n = system_.size();
-  check(MatDiagonalScale(jacobian_.get(), row_scale_.get(), state_scale_.get()));
-  {
-    const core::ReadArray rs(residual_scale_.get()), dp(f_.get()), wa(row);
-    for (PetscInt i = begin; i < end; ++i) {
-      PetscInt k = 0;
-      const PetscInt* columns = nullptr;
-      const PetscScalar* values = nullptr;
-      check(MatGetRow(jacobian_.get(), i, &k, &columns, &values));
-      check(MatSetValues(bordered_.get(), 1, &i, k, columns, values, INSERT_VALUES));
-      check(MatRestoreRow(jacobian_.get(), i, &k, &columns, &values));
-      check(MatSetValue(bordered_.get(), i, n, dp[i - begin] / rs[i - begin] * parameter_scale_, INSERT_VALUES));
-      check(MatSetValue(bordered_.get(), n, i, wa[i - begin], INSERT_VALUES));
-    }
-    if (last) check(MatSetValue(bordered_.get(), n, n, wa[wa.size() - 1], INSERT_VALUES));
-  }
-  check(MatAssemblyBegin(bordered_.get(), MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(bordered_.get(), MAT_FINAL_ASSEMBLY));
-  factorised_ = exact_factorised_ = false;
 }
 
 // Elimination by the parts' own approximate inverses, with a Krylov method around that.
@@ -290,19 +236,8 @@ void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
   }
 }
 
-void EquilibriumProblem::solve_as_whole(bool transposed, Vec rhs, Vec x) {
-  if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
-  if (!factorised_) {
-    check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
-    check(KSPSetUp(solver_.get()));
-    factorised_ = true;
-  }
-  check(transposed ? KSPSolveTranspose(solver_.get(), rhs, x) : KSPSolve(solver_.get(), rhs, x));
-}
-
 // A singular matrix gives infinite answers, as those of MUMPS alone, which Newton's method and GMRES recognise.
 void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
-  if (!ports_ && !exact_) return solve_as_whole(transposed, rhs, x);
   try {
     solve_by_parts(transposed, rhs, x);
   } catch (const core::NotConverged&) {
@@ -311,10 +246,6 @@ void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
 }
 
 void EquilibriumProblem::multiply(Vec v, Vec y) {
-  if (!blocks_) {
-    check(MatMult(bordered_.get(), v, y));
-    return;
-  }
   const core::ReadArray va(v);
   const core::WriteArray ya(y);
   blocks_->multiply(va.data(), ya.data());

@@ -49,16 +49,49 @@ void require_factors(KSP ksp) {
 
 PortElimination::PortElimination(std::vector<problem::Field> fields, std::unique_ptr<problem::PartInverse> inverse)
     : fields_(std::move(fields)), inverse_(std::move(inverse)) {
-  core::require(serves(fields_), "parts that elimination keeps apart");
+  core::require(keeps_apart(fields_), "parts that elimination keeps apart");
+  any_ = problem::parts_of(fields_).size() > 1;
 }
 
 void PortElimination::make_solvers() {
   const MPI_Comm comm = layout_->comm();
+  PC pc = nullptr;
+  PetscBool once = PETSC_FALSE;
   gate_ = std::make_unique<core::Gate>(comm);
   part_rhs_ = core::make_vector(comm, layout_->parts(), PETSC_DETERMINE);
   part_answer_ = core::duplicate(part_rhs_.get());
   all_hub_.setZero(layout_->whole_hub() + 1);
-  check(KSPCreate(comm, part_solver_.put()));
+  if (any_) make_part_solver();
+  const std::vector<PetscInt>& offsets = layout_->hub_offsets();
+  const auto rows_of = [&](int rank) {
+    return offsets[static_cast<std::size_t>(rank) + 1] - offsets[static_cast<std::size_t>(rank)];
+  };
+  leader_ = 0;
+  for (int rank = 1; rank < core::size_of(comm); ++rank)
+    if (rows_of(rank) > rows_of(leader_)) leader_ = rank;
+  // Rows that others lend travel whole.
+  constexpr PetscInt most_lent = 8;
+  lent_ = layout_->whole_hub() - rows_of(leader_);
+  hub_alone_ = (inverse_ || !any_) && lent_ <= most_lent;
+  if (!hub_alone_) lent_ = 0;
+  own_hub_.setZero(layout_->hub());
+  const MPI_Comm hub_comm = hub_alone_ ? PETSC_COMM_SELF : comm;
+  hub_rhs_ = core::make_vector(hub_comm, solved_hub(), PETSC_DETERMINE);
+  hub_answer_ = core::duplicate(hub_rhs_.get());
+  check(KSPCreate(hub_comm, hub_solver_.put()));
+  check(KSPSetOptionsPrefix(hub_solver_.get(), "hub_"));
+  core::make_direct(hub_solver_.get());
+  if (hub_alone_) {
+    check(KSPGetPC(hub_solver_.get(), &pc));
+    check(PCFactorSetMatSolverType(pc, MATSOLVERKLU));
+  }
+  check(KSPSetFromOptions(hub_solver_.get()));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(hub_solver_.get()), KSPPREONLY, &once));
+  hub_once_ = once && hub_alone_;
+}
+
+void PortElimination::make_part_solver() {
+  check(KSPCreate(layout_->comm(), part_solver_.put()));
   KSP ksp = part_solver_.get();
   PC pc = nullptr;
   check(KSPSetOptionsPrefix(ksp, "parts_"));
@@ -81,31 +114,6 @@ void PortElimination::make_solvers() {
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &once));
   by_inverse_ = shell && once;
-
-  const std::vector<PetscInt>& offsets = layout_->hub_offsets();
-  const auto rows_of = [&](int rank) {
-    return offsets[static_cast<std::size_t>(rank) + 1] - offsets[static_cast<std::size_t>(rank)];
-  };
-  leader_ = 0;
-  for (int rank = 1; rank < core::size_of(comm); ++rank)
-    if (rows_of(rank) > rows_of(leader_)) leader_ = rank;
-  hub_alone_ = inverse_ && 2 * rows_of(leader_) > layout_->whole_hub();
-  MPI_Allreduce(MPI_IN_PLACE, &hub_alone_, 1, MPI_CXX_BOOL, MPI_LAND, comm);
-  lent_ = hub_alone_ ? layout_->whole_hub() - rows_of(leader_) : 0;
-  own_hub_.setZero(layout_->hub());
-  const MPI_Comm hub_comm = hub_alone_ ? PETSC_COMM_SELF : comm;
-  hub_rhs_ = core::make_vector(hub_comm, solved_hub(), PETSC_DETERMINE);
-  hub_answer_ = core::duplicate(hub_rhs_.get());
-  check(KSPCreate(hub_comm, hub_solver_.put()));
-  check(KSPSetOptionsPrefix(hub_solver_.get(), "hub_"));
-  core::make_direct(hub_solver_.get());
-  if (hub_alone_) {
-    check(KSPGetPC(hub_solver_.get(), &pc));
-    check(PCFactorSetMatSolverType(pc, MATSOLVERKLU));
-  }
-  check(KSPSetFromOptions(hub_solver_.get()));
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(hub_solver_.get()), KSPPREONLY, &once));
-  hub_once_ = once && hub_alone_;
 }
 
 PetscInt PortElimination::solved_hub() const {
@@ -122,6 +130,7 @@ void PortElimination::solve_columns(const PortMatrix& blocks) {
   const PortLayout& l = *layout_;
   const MatrixXd& g = blocks.to_parts();
   x_.resize(g.rows(), g.cols());
+  if (!any_) return;
   if (by_inverse_) {
     inverse_->apply(core::span_of(g), core::span_of(x_));
     return;
@@ -193,8 +202,8 @@ void PortElimination::factorise(Mat a) {
 
 bool PortElimination::wants_matrix(const PortMatrix& blocks) {
   layout_ = blocks.layout();
-  if (!part_solver_) make_solvers();
-  return !by_inverse_;
+  if (!hub_solver_) make_solvers();
+  return any_ && !by_inverse_;
 }
 
 void PortElimination::factorise_parts(Mat a, const PortMatrix& blocks) {
@@ -275,6 +284,7 @@ void PortElimination::take_from_hub(const std::vector<PetscInt>& rows) {
 
 // part_answer_ = A_pp^-1 part_rhs_, or with the transpose.
 void PortElimination::solve_parts(bool transposed) {
+  if (!any_) return;
   problem::ExactPartInverse* const exact = by_inverse_ ? inverse_->exact() : nullptr;
   if (by_inverse_ && (!transposed || exact != nullptr)) {
     const core::ReadArray r(part_rhs_.get());

@@ -21,16 +21,18 @@ namespace whirl::solve {
 /// parts' own inverses take the place of A_pp^-1 (one application of a PCSHELL in "parts_"; options may put a Krylov
 /// method around it, or take another preconditioner); the hub then goes to KLU, because it is asked for often, on the
 /// rank that holds most of it: the others lend their rows, such as a border's. With approximate inverses all of it is a
-/// preconditioner. A_pp has to be regular: films at given motions are. factorise() and the solves throw
-/// core::NotConverged, on all ranks, if a matrix is singular. All members are collective on the communicator of the
-/// matrix.
+/// preconditioner. A_pp has to be regular: films at given motions are. Without parts all is hub, which goes to KLU on a
+/// rank that holds it, and to MUMPS where it is spread. factorise() and the solves throw core::NotConverged, on all
+/// ranks, if a matrix is singular. All members are collective on the communicator of the matrix.
 class PortElimination {
 public:
   static constexpr std::size_t most_parts = 63;  // a bit each, and one of the hub
   /// Whether there are parts, and no more of them than this keeps apart.
   [[nodiscard]] static bool serves(const std::vector<problem::Field>& fields) {
-    const std::size_t parts = problem::parts_of(fields).size();
-    return parts > 1 && parts <= 1 + most_parts;
+    return problem::parts_of(fields).size() > 1 && keeps_apart(fields);
+  }
+  [[nodiscard]] static bool keeps_apart(const std::vector<problem::Field>& fields) {
+    return problem::parts_of(fields).size() <= 1 + most_parts;
   }
   /// `fields`: the hub first, in local rows of the matrices to come; local rows in none of them belong to the hub.
   /// `inverse` of the parts may be null.
@@ -59,6 +61,7 @@ public:
 
 private:
   void make_solvers();
+  void make_part_solver();
   void solve_columns(const PortMatrix& blocks);
   void form_hub(const PortMatrix& blocks);
   void take(Vec whole);
@@ -80,6 +83,7 @@ private:
   std::unique_ptr<problem::PartInverse> inverse_;
   std::shared_ptr<const PortLayout> layout_;
   std::unique_ptr<PortMatrix> blocks_;  // of factorise(a)
+  bool any_ = false;                    // there are parts
   bool by_inverse_ = false;             // parts by one application of the inverse, without a matrix
   bool hub_alone_ = false;              // the hub is solved by one rank, which holds most of it,
   bool hub_once_ = false;               // by its factors alone: a KSP would look for its options in every solve

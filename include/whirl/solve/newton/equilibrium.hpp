@@ -19,12 +19,12 @@ class PortMatrix;
 ///
 /// The matrix is [dF/dx dF/dp; row]. Films with own states are eliminated on their ports (`port_elimination`), with the
 /// border part of what is left, by their own preconditioners where all have one: from blocks that are spread like the
-/// films, so that no matrix is assembled unless somebody asks for it. A machine without any is assembled and factorised
-/// as a whole (MUMPS). All are regular at folds. Where iterations on approximate inverses do not come to the tolerance
+/// films, so that no matrix is assembled unless somebody asks for it. A machine without any is what is left as a whole.
+/// All are regular at folds. Where iterations on approximate inverses do not come to the tolerance
 /// (-equilibrium_ksp_rtol, 1e-12; -equilibrium_ksp_max_it, 100), and for transposes, such films are factorised if the
 /// machine has at most -parts_whole_states (1,000,000). Otherwise solve() throws core::DomainError with the reason,
 /// which ends Newton's method without convergence, and solve_transposed() core::NotConverged. The Krylov method around
-/// preconditioners, and MUMPS for the whole, have the prefix "equilibrium_".
+/// preconditioners has the prefix "equilibrium_".
 class EquilibriumProblem : public ExtendedProblem, public Adjoint {
 public:
   /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
@@ -60,26 +60,22 @@ private:
   void prepare(Vec u);
   /// The entries of the bordered matrix at x_, not scaled: dF/dp is f_.
   void list();
-  void linearise_parts(Vec row);
-  void linearise_whole(Vec row);
   void fill_bordered();
   /// Why it did not come far enough; empty if it did. The same on all ranks.
   [[nodiscard]] std::string solve_by_inverses(Vec rhs, Vec x);
   void solve_by_parts(bool transposed, Vec rhs, Vec x);
-  void solve_as_whole(bool transposed, Vec rhs, Vec x);
   void solve(bool transposed, Vec rhs, Vec x);
   problem::System& system_;
   double parameter_scale_;
   core::Vector weights_, state_scale_, residual_scale_, row_scale_, x_, rest_, f_;
   core::Matrix jacobian_, bordered_;
-  problem::Entries entries_;                            // of the bordered matrix of machines with parts,
+  problem::Entries entries_;                            // of the bordered matrix,
   std::unique_ptr<PortMatrix> blocks_;                  // these in blocks, scaled by
   core::Vector rows_, columns_, row_;                   // these; and the last row
   std::vector<PetscInt> hub_;                           // numbers of the hub's states
   std::unique_ptr<PortElimination> ports_, exact_;      // by approximate inverses while these serve; by MUMPS
   std::unique_ptr<PortKrylov> krylov_;                  // around `ports_`
-  core::LinearSolver solver_;                           // of machines without parts
-  bool factorised_ = false, exact_factorised_ = false;  // `ports_` or `solver_`, `exact_`: of the present matrix
+  bool factorised_ = false, exact_factorised_ = false;  // `ports_`, `exact_`: of the present matrix
 };
 
 /// Solves F(0, x, 0) = 0 at the system's parameter from the guess in x. Collective.
