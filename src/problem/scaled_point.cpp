@@ -128,14 +128,14 @@ void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Re
   out.tail(own_states()).setZero();
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const OwnStates& film = structure_->own()[i];
-    const Eigen::MatrixXd& forces = at.films.own[i].force_rates;
+    const core::ThinRows& forces = at.films.own[i].force_rates;
     const Index first = n + film.first;
     if (forces.rows() > 0)
       with_blocks([&](const auto& blocks) {
         out.head(n) -= blocks.b.middleCols(film.first_force, film.forces) *
                        (forces * v.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count)));
       });
-    const std::vector<double>& values = at.films.own[i].rates;
+    const std::vector<double>& values = at.films.own[i].d_rates;
     for (std::size_t e = 0; e < values.size(); ++e) {
       const Index row = first + film.rates[e].row, column = first + film.rates[e].column;
       out(row) += values[e] * v(column) * state_scale_(column) / residual_scale_(row);
@@ -154,13 +154,13 @@ void ScaledPoint::times(const PointState& at, const VectorXd& a, const VectorXd&
   VectorXd forces = at.films.d_inputs * inputs;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const OwnStates& film = structure_->own()[i];
-    const OwnTangents& t = at.films.own[i];
+    const core::PartResponse& t = at.films.own[i];
     const Index first = n + film.first;
     const VectorXd s = a.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count));
     forces.segment(film.first_force, film.forces) += t.forces * s;
     VectorXd rows = t.inputs.transpose() * inputs.segment(film.first_input, film.inputs);
-    for (std::size_t e = 0; e < t.states.size(); ++e)
-      rows(film.states[e].row) += t.states[e] * s(film.states[e].column);
+    for (std::size_t e = 0; e < t.d_states.size(); ++e)
+      rows(film.states[e].row) += t.d_states[e] * s(film.states[e].column);
     out.segment(first, film.count) += rows.cwiseQuotient(residual_scale_.segment(first, film.count));
   }
   with_blocks([&](const auto& blocks) { out.head(n).noalias() -= blocks.b * forces; });
@@ -178,16 +178,17 @@ void ScaledPoint::times_transposed(const PointState& at, const Eigen::Ref<const 
   VectorXd inputs = at.films.d_inputs.transpose() * forces;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const OwnStates& film = structure_->own()[i];
-    const OwnTangents& t = at.films.own[i];
+    const core::PartResponse& t = at.films.own[i];
     const Index first = n + film.first;
     const VectorXd rows = y.segment(first, film.count).cwiseQuotient(residual_scale_.segment(first, film.count));
     inputs.segment(film.first_input, film.inputs) += t.inputs * rows;
     const auto own = forces.segment(film.first_force, film.forces);
     VectorXd s = t.forces.transpose() * own, r = VectorXd::Zero(film.count);
     if (t.force_rates.rows() > 0) r = t.force_rates.transpose() * own;
-    for (std::size_t e = 0; e < t.states.size(); ++e)
-      s(film.states[e].column) += t.states[e] * rows(film.states[e].row);
-    for (std::size_t e = 0; e < t.rates.size(); ++e) r(film.rates[e].column) += t.rates[e] * rows(film.rates[e].row);
+    for (std::size_t e = 0; e < t.d_states.size(); ++e)
+      s(film.states[e].column) += t.d_states[e] * rows(film.states[e].row);
+    for (std::size_t e = 0; e < t.d_rates.size(); ++e)
+      r(film.rates[e].column) += t.d_rates[e] * rows(film.rates[e].row);
     by_state.segment(first, film.count) = s.cwiseProduct(state_scale_.segment(first, film.count));
     by_rate.segment(first, film.count) = r.cwiseProduct(state_scale_.segment(first, film.count));
   }
@@ -209,7 +210,7 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
   jxdot.topLeftCorner(n, n) = all.l1;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const OwnStates& film = structure_->own()[i];
-    const OwnTangents& t = at.films.own[i];
+    const core::PartResponse& t = at.films.own[i];
     const Index first = n + film.first;
     const auto rows = residual_scale_.segment(first, film.count).cwiseInverse().asDiagonal();
     jx.block(first, 0, film.count, n).noalias() =
@@ -226,8 +227,8 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
         out(row, column) += values[e] * state_scale_(column) / residual_scale_(row);
       }
     };
-    add(film.states, t.states, jx);
-    add(film.rates, t.rates, jxdot);
+    add(film.states, t.d_states, jx);
+    add(film.rates, t.d_rates, jxdot);
   }
 }
 

@@ -110,43 +110,16 @@ void RotorSystem::MachineBlocks::load(double angle, Eigen::VectorXd& load) {
   }
 }
 
-namespace {
-
-// Derivatives of a film with own states, which stands at `at` among all of them, into the blocks.
-void take(const film::StateResponse& response, const problem::OwnStates& at, Eigen::Index coordinates,
-          problem::OwnTangents& out, Eigen::VectorXd& d_speed) {
-  core::require(response.d_states.size() == at.states.size() && response.d_rates.size() == at.rates.size(),
-                "a film tells its derivatives at the same places in every call");
-  out.states = response.d_states;
-  out.rates = response.d_rates;
-  out.inputs.resize(at.inputs, at.count);
-  out.forces.resize(at.forces, at.count);
-  out.force_rates.resize(response.force_d_rates.empty() ? 0 : at.forces, at.count);
-  const auto thin = [&](const std::vector<double>& v) {
-    return Eigen::Map<const Eigen::RowVectorXd>(v.data(), at.count);
-  };
-  for (Eigen::Index e = 0; e < at.forces; ++e) {
-    const auto d = static_cast<std::size_t>(e);
-    out.inputs.row(e) = thin(response.d_position[d]);
-    out.inputs.row(at.forces + e) = thin(response.d_velocity[d]);
-    out.forces.row(e) = thin(response.force_d_states[d]);
-    if (out.force_rates.rows() > 0) out.force_rates.row(e) = thin(response.force_d_rates[d]);
-  }
-  d_speed.segment(coordinates + at.first, at.count) = thin(response.d_speed).transpose();
-}
-
-}  // namespace
-
 void RotorSystem::MachineBlocks::films(const Eigen::VectorXd& inputs, const double* own, const double* rates,
                                        bool tangents, problem::Films& films) {
   const int bearings = system_.n_bearings();
   const Eigen::Index r = b_.cols();
   films.forces.resize(r);
   films.residual.resize(system_.n_own_);
+  films.own.resize(own_.size());
   if (tangents) {
     films.d_inputs.setZero(r, 2 * r);
     films.d_speed.resize(r + system_.n_own_);
-    films.own.resize(own_.size());
   }
   const film::Need need = tangents ? film::Need::tangents : film::Need::force;
   std::size_t next = 0;  // among the films with own states
@@ -156,13 +129,15 @@ void RotorSystem::MachineBlocks::films(const Eigen::VectorXd& inputs, const doub
     const double* at = inputs.data() + 2 * first;
     const auto n = static_cast<std::size_t>(ports);
     const film::JournalMotion motion = system_.motion(k, {at, n}, {at + ports, n});
-    FilmPart& part = *system_.bearings_[k].part;
-    system_.at_bearing(k, [&] { part.evaluate(motion, own, rates, need); });
-    const film::StateResponse& here = part.response();
+    const FilmPart& part = *system_.bearings_[k].part;
+    film::StateResponse& here = part.count() > 0 ? films.own[next++] : without_states_;
+    system_.at_bearing(k, [&] { part.evaluate(motion, own, rates, need, here); });
     const film::Response& response = here.journal;
     for (Eigen::Index d = 0; d < ports; ++d) films.forces(first + d) = response.force[static_cast<std::size_t>(d)];
-    films.residual.segment(part.first(), part.count()) =
-        Eigen::Map<const Eigen::VectorXd>(here.residual.data(), part.count());
+    const auto values = [&](const std::vector<double>& v) {
+      return Eigen::Map<const Eigen::VectorXd>(v.data(), part.count());
+    };
+    films.residual.segment(part.first(), part.count()) = values(here.residual);
     if (!tangents) continue;
     for (Eigen::Index d = 0; d < ports; ++d) {
       const auto row = static_cast<std::size_t>(d);
@@ -172,9 +147,7 @@ void RotorSystem::MachineBlocks::films(const Eigen::VectorXd& inputs, const doub
       }
       films.d_speed(first + d) = response.d_speed[row];
     }
-    if (part.count() == 0) continue;
-    take(here, own_[next], r, films.own[next], films.d_speed);
-    ++next;
+    films.d_speed.segment(r + part.first(), part.count()) = values(here.d_speed);
   }
 }
 

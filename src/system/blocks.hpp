@@ -43,7 +43,8 @@ private:
   struct Ports {
     Eigen::Index first, count;
   };
-  std::vector<Ports> ports_;  // of each bearing among the forces; positions stand at twice that, then rates
+  film::StateResponse without_states_;  // work space
+  std::vector<Ports> ports_;            // of each bearing among the forces; positions stand at twice that, then rates
 };
 
 }  // namespace whirl::system

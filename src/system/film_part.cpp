@@ -69,10 +69,10 @@ void FilmPart::evaluate(const film::JournalMotion& motion, std::span<const doubl
   asked_ = std::move(now);
 }
 
-void FilmPart::evaluate(const film::JournalMotion& motion, const double* own, const double* rates, film::Need need) {
+void FilmPart::evaluate(const film::JournalMotion& motion, const double* own, const double* rates, film::Need need,
+                        film::StateResponse& response) const {
   const auto n = static_cast<std::size_t>(count_);
-  asked_.reset();
-  film_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response_);
+  film_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response);
 }
 
 std::vector<double> FilmPart::unloaded(const film::JournalMotion& motion) const {
@@ -141,23 +141,20 @@ void FilmPart::add(Entries& j, bool values, double alpha, double sigma) const {
   };
   matrix(share_.d_states, response_.d_states, alpha);
   matrix(share_.d_rates, response_.d_rates, sigma);
-  const PetscInt count = rows();
-  for (std::size_t port = 0; port < ports_.size(); ++port)
-    for (const auto& [q, side] : ports_[port]) {
-      const auto column = [&, side = side](const film::PortColumns& from, PetscInt unknown) {
-        for (PetscInt k = 0; k < count; ++k)
-          j.add(begin + k, unknown, values ? alpha * side * from[port][static_cast<std::size_t>(k)] : 0.0);
-      };
-      column(response_.d_position, 2 * q);
-      column(response_.d_velocity, 2 * q + 1);
-      const bool by_rates = values && !response_.force_d_rates.empty();
-      for (PetscInt k = 0; k < count; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        double value = values ? -side * alpha * response_.force_d_states[port][i] : 0.0;
-        if (by_rates) value -= side * sigma * response_.force_d_rates[port][i];
-        j.add(2 * q, begin + k, value);
+  const Eigen::Index count = rows(), n = std::ssize(ports_);
+  for (Eigen::Index port = 0; port < n; ++port)
+    for (const auto& [q, side] : ports_[static_cast<std::size_t>(port)])
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const auto row = begin + static_cast<PetscInt>(k);
+        const auto by = [&, side = side](Eigen::Index input) {
+          return values ? alpha * side * response_.inputs(input, k) : 0.0;
+        };
+        double of_force = values ? -side * alpha * response_.forces(port, k) : 0.0;
+        if (values && response_.force_rates.rows() > 0) of_force -= side * sigma * response_.force_rates(port, k);
+        j.add(row, 2 * q, by(port));
+        j.add(row, 2 * q + 1, by(n + port));
+        j.add(2 * q, row, of_force);
       }
-    }
 }
 
 template void FilmPart::add(core::EntryStream& j, bool values, double alpha, double sigma) const;

@@ -49,8 +49,9 @@ public:
   /// keeps its answer: residual, derivatives, inverse and d/dp of one linearisation are one evaluation.
   void evaluate(const film::JournalMotion& motion, std::span<const double> own, std::span<const double> rates,
                 film::Need need);
-  /// The whole film; `own` and `rates`: those of all films, null if there are none.
-  void evaluate(const film::JournalMotion& motion, const double* own, const double* rates, film::Need need);
+  /// The whole film into `response`; `own` and `rates`: those of all films, null if there are none.
+  void evaluate(const film::JournalMotion& motion, const double* own, const double* rates, film::Need need,
+                film::StateResponse& response) const;
   /// What it answered last: of the journal, what this rank adds.
   [[nodiscard]] const film::StateResponse& response() const { return response_; }
   /// All of that of the journal, once the ranks have taken their sum; on a single rank it is the same.

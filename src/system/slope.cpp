@@ -55,7 +55,8 @@ void RotorSystem::Slope::move(const FilmInputs& in, std::vector<FilmRate>& rates
       for (std::size_t d = 0; d < here.journal.force.size(); ++d)
         rates[b].force[d] -= moves[port] * here.journal.d_position[d][port];
       for (std::size_t k = 0; k < here.residual.size(); ++k)
-        rates[b].residual[k] -= moves[port] * here.d_position[port][k];
+        rates[b].residual[k] -=
+            moves[port] * here.inputs(static_cast<Eigen::Index>(port), static_cast<Eigen::Index>(k));
     }
   }
 }

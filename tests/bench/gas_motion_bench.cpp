@@ -108,9 +108,9 @@ public:
     for (std::size_t i = 0; i < structure.own().size(); ++i) {
       const problem::OwnStates& own = structure.own()[i];
       for (std::size_t e = 0; e < own.rates.size(); ++e) {
-        core::require(own.rates[e].row == own.rates[e].column || at.films.own[i].rates[e] == 0,
+        core::require(own.rates[e].row == own.rates[e].column || at.films.own[i].d_rates[e] == 0,
                       "rates of the film's states are coupled");
-        films_(own.first + own.rates[e].row) += at.films.own[i].rates[e];
+        films_(own.first + own.rates[e].row) += at.films.own[i].d_rates[e];
       }
     }
     const auto scaled = [&](VectorXd& v) {
@@ -122,7 +122,7 @@ public:
       const problem::OwnStates& own = structure.own()[i];
       for (std::size_t e = 0; e < own.states.size(); ++e)
         if (own.states[e].row == own.states[e].column && films_(own.first + own.states[e].row) == 0)
-          followers_(own.first + own.states[e].row) += at.films.own[i].states[e];
+          followers_(own.first + own.states[e].row) += at.films.own[i].d_states[e];
     }
     scaled(films_);
     scaled(followers_);

@@ -54,13 +54,12 @@ public:
     r.d_states.assign(2, 0);
     r.d_rates.assign(2, 1);
     r.d_speed.assign(2, 0);
-    r.force_d_rates.clear();
-    for (PortColumns* columns : {&r.d_position, &r.d_velocity, &r.force_d_states})
-      columns->assign(2, std::vector<double>(2, 0));
+    r.resize(true, 2, 2);
+    r.inputs.setZero();
+    r.forces = -stiffness * Eigen::Matrix2d::Identity();
     for (std::size_t i = 0; i < 2; ++i) {
       r.residual[i] = rates[i] - motion.velocity[i];
-      r.d_velocity[i][i] = -1;
-      r.force_d_states[i][i] = -stiffness;
+      r.by_velocity(i)[i] = -1;
       r.journal.force[i] = -stiffness * states[i];
     }
   }

@@ -82,14 +82,13 @@ struct Eliminated {
 };
 inline Eliminated eliminate(const Film& film, const StateResponse& r) {
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(film, r, 0.0));
-  const auto n = static_cast<Eigen::Index>(r.residual.size());
-  Eigen::MatrixXd by(n, 5), force(2, n);
+  const auto n = static_cast<Eigen::Index>(r.residual.size()), ports = r.forces.rows();
+  Eigen::MatrixXd by(n, 5);
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto s = static_cast<std::size_t>(k);
-    by.row(k) << r.d_position[0][s], r.d_position[1][s], r.d_velocity[0][s], r.d_velocity[1][s], r.d_speed[s];
-    force.col(k) << r.force_d_states[0][s], r.force_d_states[1][s];
+    by.row(k) << r.inputs(0, k), r.inputs(1, k), r.inputs(ports, k), r.inputs(ports + 1, k), r.d_speed[s];
   }
-  const Eigen::MatrixXd through = -force * lu.solve(by).eval();
+  const Eigen::MatrixXd through = -r.forces.topRows(2) * lu.solve(by).eval();
   Eliminated out;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto row = static_cast<Eigen::Index>(i);

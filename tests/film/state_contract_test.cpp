@@ -159,12 +159,15 @@ TEST_P(StateContract, TaylorRemainderIsSecondOrder) {
         double& to = g(static_cast<Eigen::Index>(k));
         if (states) moved.states[k] += e * base.along[k];
         if (rates) moved.rates[k] += e * base.along_rates[k];
-        if (moves) to = step * at.d_position[port][k];
-        if (velocity) to = step * at.d_velocity[port][k];
+        if (moves) to = step * at.inputs(static_cast<Eigen::Index>(port), static_cast<Eigen::Index>(k));
+        if (velocity)
+          to = step * at.inputs(at.forces.rows() + static_cast<Eigen::Index>(port), static_cast<Eigen::Index>(k));
         if (speed) to = step * at.d_speed[k];
         for (std::size_t i = 0; i < ports; ++i) {
-          if (states) f[i] += e * base.along[k] * at.force_d_states[i][k];
-          if (rates && !at.force_d_rates.empty()) f[i] += e * base.along_rates[k] * at.force_d_rates[i][k];
+          if (states) f[i] += e * base.along[k] * at.forces(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+          if (rates && at.force_rates.rows() > 0)
+            f[i] +=
+                e * base.along_rates[k] * at.force_rates(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
         }
       }
       const auto add = [&](const Places& places, const std::vector<double>& values, const std::vector<double>& v) {
@@ -209,7 +212,6 @@ TEST_P(StateContract, SharesAddUpToTheWhole) {
   const Made m = make(GetParam());
   const int n = static_cast<int>(m.film->states());
   const bool may_be_cut = m.film->cut(n / 2) % n != 0;
-  const std::size_t ports = m.film->ports().size();
   StateResponse whole, part;
   m.film->evaluate(m.motion, m.states, m.rates, Need::tangents, whole);
   const auto dense = [&](const Share& share, const StateResponse& r) {
@@ -242,12 +244,14 @@ TEST_P(StateContract, SharesAddUpToTheWhole) {
       };
       compare(part.residual, whole.residual, "residual");
       compare(part.d_speed, whole.d_speed, "d_speed");
-      for (std::size_t i = 0; i < ports; ++i) {
-        compare(part.d_position[i], whole.d_position[i], "d_position");
-        compare(part.d_velocity[i], whole.d_velocity[i], "d_velocity");
-        compare(part.force_d_states[i], whole.force_d_states[i], "force_d_states");
-        if (!whole.force_d_rates.empty()) compare(part.force_d_rates[i], whole.force_d_rates[i], "force_d_rates");
-      }
+      const auto compare_rows = [&](const core::ThinRows& a, const core::ThinRows& b, const char* what) {
+        ASSERT_EQ(a.rows(), b.rows()) << what;
+        for (Eigen::Index i = 0; i < a.rows(); ++i)
+          expect_near(a.row(i), b.row(i).segment(begin, rows), b.row(i).cwiseAbs().maxCoeff(), what);
+      };
+      compare_rows(part.inputs, whole.inputs, "inputs");
+      compare_rows(part.forces, whole.forces, "forces");
+      compare_rows(part.force_rates, whole.force_rates, "force_rates");
       const Eigen::MatrixXd here = dense(share, part);
       for (const bool rates : {false, true}) {
         const Eigen::MatrixXd of = all.middleRows((rates ? n : 0) + begin, rows);

@@ -106,8 +106,9 @@ TEST(ThdFilm, OneLayerInArraysIsThatOfNodes) {
           r.d_states.resize(by_states.size());
           r.d_rates.resize(by_rates.size());
           r.d_speed.resize(n);
-          for (PortColumns* columns : {&r.d_position, &r.d_velocity, &r.force_d_states})
-            columns->assign(tilt ? 4 : 2, std::vector<double>(n, 0.0));
+          r.resize(true, tilt ? 4 : 2, static_cast<Eigen::Index>(n));
+          r.inputs.setZero();
+          r.forces.setZero();
           std::size_t at = 0, at_rates = 0;
           film.evaluate(m, states, rates, Need::tangents, 0, at, at_rates, r);
           EXPECT_EQ(at, by_states.size());
@@ -126,11 +127,13 @@ TEST(ThdFilm, OneLayerInArraysIsThatOfNodes) {
         same(a.d_states, b.d_states, 4);
         same(a.d_rates, b.d_rates, 1);
         same(a.d_speed, b.d_speed, 2);
-        for (std::size_t port = 0; port < a.d_position.size(); ++port) {
-          same(a.d_position[port], b.d_position[port], 2);
-          same(a.d_velocity[port], b.d_velocity[port], 2);
-          same(a.force_d_states[port], b.force_d_states[port], 2);
-        }
+        const auto rows_of = [](const ThinRows& of, Eigen::Index row) {
+          return std::vector<double>(of.row(row).begin(), of.row(row).end());
+        };
+        for (Eigen::Index row = 0; row < a.inputs.rows(); ++row)
+          same(rows_of(a.inputs, row), rows_of(b.inputs, row), 2);
+        for (Eigen::Index row = 0; row < a.forces.rows(); ++row)
+          same(rows_of(a.forces, row), rows_of(b.forces, row), 2);
         for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(a.journal.force[c], b.journal.force[c]);
       }
 }

@@ -120,7 +120,7 @@ TEST(Tilt, BlocksAreTheSameEquations) {
         MatrixXd(structure.l0()) - MatrixXd(structure.b()) * films.d_inputs * MatrixXd(structure.c());
     for (std::size_t k = 0; k < structure.own().size(); ++k) {
       const problem::OwnStates& own = structure.own()[k];
-      const problem::OwnTangents& tangents = films.own[k];
+      const core::PartResponse& tangents = films.own[k];
       EXPECT_EQ(own.inputs, 8);
       EXPECT_EQ(own.forces, 4);
       const Index first = n + own.first;
@@ -129,7 +129,7 @@ TEST(Tilt, BlocksAreTheSameEquations) {
       jx.block(0, first, n, own.count) =
           -MatrixXd(structure.b()).middleCols(own.first_force, own.forces) * tangents.forces;
       for (std::size_t e = 0; e < own.states.size(); ++e)
-        jx(first + own.states[e].row, first + own.states[e].column) += tangents.states[e];
+        jx(first + own.states[e].row, first + own.states[e].column) += tangents.d_states[e];
     }
     const MatrixXd found = test::dense(j.get());
     for (Index row = 0; row < all; ++row)

@@ -6,6 +6,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "whirl/core/port_response.hpp"
+
 namespace whirl::problem {
 
 /// Blocks are sparse, by columns and compressed: those of a whole shaft couple neighbours only.
@@ -26,22 +28,14 @@ struct OwnStates {
   bool settles = false;
 };
 
-/// Derivatives of one film with own states at one point.
-struct OwnTangents {
-  std::vector<double> states, rates;  ///< dg/ds, dg/ds' at the places told
-  Eigen::MatrixXd inputs;             ///< dg/dw [inputs x count]
-  Eigen::MatrixXd forces;             ///< df/ds [forces x count]
-  Eigen::MatrixXd force_rates;        ///< df/ds', likewise; empty if zero
-};
-
-/// The nonlinear part at one point.
+/// The nonlinear part at one point: f, g and their derivatives.
 struct Films {
   Eigen::VectorXd forces;    ///< f [r]
   Eigen::VectorXd residual;  ///< g [k]
   // Only with tangents:
-  Eigen::MatrixXd d_inputs;  ///< df/dw [r x w] at constant s
-  Eigen::VectorXd d_speed;   ///< df/dOmega [r], then dg/dOmega [k]
-  std::vector<OwnTangents> own;
+  Eigen::MatrixXd d_inputs;             ///< df/dw [r x w] at constant s
+  Eigen::VectorXd d_speed;              ///< df/dOmega [r], then dg/dOmega [k]
+  std::vector<core::PartResponse> own;  ///< of the films with own states
 };
 
 /// With the state (x, s), x [n] coordinates and rates, s [k] own states of films:

@@ -167,9 +167,10 @@ void GasFilm::close(const Part& part, std::span<const double> rates) const {
       for (std::size_t n = 0; n < ports().size(); ++n) {
         response.journal.force[static_cast<std::size_t>(ports()[n])] += (p - options_.ambient) * area * w[n];
         if (!part.tangents) continue;
-        response.force_d_states[n][k] = area * w[n];
-        response.d_position[n][k] = (response.d_position[n][k] - balance * mean_ * w[n]) * over;
-        response.d_velocity[n][k] = p * mean_ * w[n] * over;
+        response.of_force(n)[k] = area * w[n];
+        double& by_position = response.by_position(n)[k];
+        by_position = (by_position - balance * mean_ * w[n]) * over;
+        response.by_velocity(n)[k] = p * mean_ * w[n] * over;
       }
       if (!part.tangents) continue;
       response.d_speed[k] *= over;
@@ -188,8 +189,8 @@ void GasFilm::hold(const Part& part, std::size_t k, std::size_t own, std::span<c
   for (std::size_t n = 0; n < ports().size(); ++n) {
     response.journal.force[static_cast<std::size_t>(ports()[n])] += (p - options_.ambient) * dx_ * dz_ * w[n];
     if (!part.tangents) continue;
-    response.force_d_states[n][k] = dx_ * dz_ * w[n];
-    response.d_position[n][k] = response.d_velocity[n][k] = 0.0;
+    response.of_force(n)[k] = dx_ * dz_ * w[n];
+    response.by_position(n)[k] = response.by_velocity(n)[k] = 0.0;
   }
   if (!part.tangents) return;
   response.d_speed[k] = 0.0;
@@ -207,11 +208,9 @@ void GasFilm::evaluate(const JournalMotion& motion, const Share& share, std::spa
   response.d_states.assign(tangents ? share.d_states.size() : 0, 0.0);
   response.d_rates.assign(tangents ? share.d_rates.size() : 0, 1.0);
   response.d_speed.assign(tangents ? rows : 0, 0.0);
-  response.force_d_rates.clear();
-  for (PortColumns* columns : {&response.d_position, &response.d_velocity, &response.force_d_states}) {
-    columns->resize(ports().size());
-    for (std::vector<double>& column : *columns) column.assign(tangents ? rows : 0, 0.0);
-  }
+  response.resize(tangents, std::ssize(ports()), share.rows());
+  response.inputs.setZero();
+  response.forces.setZero();
   response.journal.min_thickness = least_thickness(motion, states);
   if (!(response.journal.min_thickness > 0.0)) throw core::DomainError("film of gas: the surfaces touch");
   if (rows == 0) return;

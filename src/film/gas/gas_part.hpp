@@ -26,7 +26,8 @@ struct GasFilm::Part {
            motion.velocity[3] * w[3];
   }
   void add_position(std::size_t row, double by_h, const Levers& w) const {
-    for (std::size_t n = 0; n < response.d_position.size(); ++n) response.d_position[n][row] += by_h * w[n];
+    for (Eigen::Index n = 0; n < response.forces.rows(); ++n)
+      response.inputs(n, static_cast<Eigen::Index>(row)) += by_h * w[static_cast<std::size_t>(n)];
   }
 };
 

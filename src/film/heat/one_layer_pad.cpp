@@ -266,16 +266,16 @@ void OneLayerPad::write(std::size_t first, std::size_t at, StateResponse& respon
       to += 4;
     }
   }
-  const auto interleave = [&](const Array& flow, const Array& warm, std::vector<double>& rows) {
-    double* const out = &rows[first];
+  const auto interleave = [&](const Array& flow, const Array& warm, double* rows) {
+    double* const out = rows + first;
     for (std::ptrdiff_t n = 0; n < count_; ++n) {
       out[2 * n] = *flow.at(n);
       out[2 * n + 1] = *warm.at(n);
     }
   };
-  for (std::size_t port = 0; port < response.d_position.size(); ++port) {
-    interleave(flow_row_.by_position[port], warm_row_.by_position[port], response.d_position[port]);
-    double* const out = &response.d_velocity[port][first];
+  for (std::size_t port = 0; port < static_cast<std::size_t>(response.forces.rows()); ++port) {
+    interleave(flow_row_.by_position[port], warm_row_.by_position[port], response.by_position(port));
+    double* const out = response.by_velocity(port) + first;
     const Array& direction = port % 2 == 0 ? cosine_ : sine_;
     for (std::ptrdiff_t n = 0; n < count_; ++n) {
       const double by = -*direction.at(n) * (port < 2 ? 1.0 : *z_.at(n));
@@ -283,7 +283,7 @@ void OneLayerPad::write(std::size_t first, std::size_t at, StateResponse& respon
       out[2 * n + 1] = by * *warm_row_.by_rate.at(n);
     }
   }
-  interleave(flow_row_.by_speed, warm_row_.by_speed, response.d_speed);
+  interleave(flow_row_.by_speed, warm_row_.by_speed, response.d_speed.data());
 }
 
 void OneLayerPad::evaluate(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates,

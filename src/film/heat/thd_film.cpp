@@ -85,13 +85,8 @@ public:
     response.d_states.resize(tangents ? share.d_states.size() : 0);
     response.d_rates.resize(tangents ? share.d_rates.size() : 0);
     response.d_speed.resize(tangents ? rows : 0);
-    response.force_d_rates.clear();
-    for (PortColumns* columns : {&response.d_position, &response.d_velocity, &response.force_d_states}) {
-      columns->resize(ports().size());
-      for (std::vector<double>& column : *columns) column.resize(tangents ? rows : 0);
-    }
-    // Pads write all of the others, and add to these.
-    for (std::vector<double>& column : response.force_d_states) std::fill(column.begin(), column.end(), 0.0);
+    response.resize(tangents, std::ssize(ports()), share.rows());
+    response.forces.setZero();  // pads write all of the others, and add to these
     if (rows == 0) return;
     std::size_t at = 0, at_rates = 0;
     for (std::size_t n = 0; n < pads_.size(); ++n)

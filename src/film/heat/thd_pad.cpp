@@ -275,11 +275,11 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
     if (sides_[n][side].face >= 0) put(by[side + 1]);
   for (int k = 0; k < L; ++k) response.d_rates[at_rates++] = 1.0;
   const std::array<double, 4> velocity = {-here.cosine, -here.sine, -here.z * here.cosine, -here.z * here.sine};
-  for (std::size_t port = 0; port < response.d_position.size(); ++port)
+  for (std::size_t port = 0; port < static_cast<std::size_t>(response.forces.rows()); ++port)
     for (int k = 0; k < b; ++k) {
       const std::size_t to = r + static_cast<std::size_t>(k);
-      response.d_position[port][to] = by_position(k, static_cast<Eigen::Index>(port));
-      response.d_velocity[port][to] = velocity[port] * by_rate(k);
+      response.by_position(port)[to] = by_position(k, static_cast<Eigen::Index>(port));
+      response.by_velocity(port)[to] = velocity[port] * by_rate(k);
     }
   for (int k = 0; k < b; ++k) response.d_speed[r + static_cast<std::size_t>(k)] = by_speed(k);
 }
@@ -311,8 +311,8 @@ void ThdPad<Count, Most>::integrate(Need need, std::size_t first, StateResponse&
         response.journal.force[c] += weight[c] * integral;
         if (need == Need::force) continue;
         const auto b = static_cast<std::size_t>(block());
-        response.force_d_states[c][first + node(near, j) * b] += weight[c] * d_p;
-        response.force_d_states[c][first + node(far, j) * b] += weight[c] * d_q;
+        response.of_force(c)[first + node(near, j) * b] += weight[c] * d_p;
+        response.of_force(c)[first + node(far, j) * b] += weight[c] * d_q;
       }
     }
   }

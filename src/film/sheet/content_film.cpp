@@ -65,11 +65,7 @@ public:
     response.d_states.resize(tangents ? share.d_states.size() : 0);
     response.d_rates.resize(tangents ? share.d_rates.size() : 0);
     response.d_speed.resize(tangents ? rows : 0);
-    response.force_d_rates.clear();
-    for (PortColumns* columns : {&response.d_position, &response.d_velocity, &response.force_d_states}) {
-      columns->resize(ports().size());
-      for (std::vector<double>& column : *columns) column.resize(tangents ? rows : 0);
-    }
+    response.resize(tangents, std::ssize(ports()), share.rows());
     for (std::size_t n = 0; n < pads_.size(); ++n)
       solvers_[n]->evaluate(motion, at_hand_.pads[n], states, rates, need, response);
   }

@@ -135,8 +135,7 @@ void ContentPad::row_in_hole(int i, int j, double value, double rate, std::size_
     if (around_it[place].state) response.d_states[to[place]] = 0.0;
   response.d_states[to[4]] = in_holes_;
   response.d_rates[k] = 1.0;
-  for (std::size_t port = 0; port < response.d_position.size(); ++port)
-    response.d_position[port][k] = response.d_velocity[port][k] = 0.0;
+  response.inputs.col(static_cast<Eigen::Index>(k)).setZero();
   response.d_speed[k] = 0.0;
 }
 
@@ -183,9 +182,9 @@ void ContentPad::row(int i, int j, double rate, std::size_t k, const PadShare& s
     d_velocity[2 * moment + 1] -= lever * here.sine;
   }
   by_speed += 0.5 * ((X_ + here.z * tx_) * here.sine - (Y_ + here.z * ty_) * here.cosine);
-  for (std::size_t port = 0; port < response.d_position.size(); ++port) {
-    response.d_position[port][k] = d_position[port];
-    response.d_velocity[port][k] = d_velocity[port];
+  for (std::size_t port = 0; port < static_cast<std::size_t>(response.forces.rows()); ++port) {
+    response.by_position(port)[k] = d_position[port];
+    response.by_velocity(port)[k] = d_velocity[port];
   }
   response.d_speed[k] = by_speed;
 }
@@ -205,8 +204,7 @@ void ContentPad::integrate(int i, int k, Need need, StateResponse& response) con
     for (std::size_t f = 0; f < components; ++f) {
       response.journal.force[f] += weight[f] * here.p;
       for (std::size_t d = 0; d < components; ++d) response.journal.d_position[f][d] += weight[f] * by_position[d];
-      if (need == Need::tangents && k >= 0)
-        response.force_d_states[f][static_cast<std::size_t>(k + j)] = weight[f] * here.p_q;
+      if (need == Need::tangents && k >= 0) response.of_force(f)[k + j] = weight[f] * here.p_q;
     }
   }
 }

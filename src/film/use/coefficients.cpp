@@ -17,13 +17,6 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd;
 
-MatrixXd columns(const PortColumns& of, Index rows, Index count) {
-  MatrixXd out = MatrixXd::Zero(rows, count);
-  for (std::size_t j = 0; j < of.size(); ++j)
-    out.col(static_cast<Index>(j)) = Eigen::Map<const Eigen::VectorXd>(of[j].data(), rows);
-  return out;
-}
-
 }  // namespace
 
 // V of block Arnoldi [states x ports of each step] on dg/ds^-T dg/ds'^T, and what that does to it.
@@ -61,13 +54,13 @@ void FrequencyCoefficients::begin() {
   s.known = true;
   FilmMatrix<double> e(whole, whole.d_rates);
   s.rates = e.filled(at_.d_rates);
-  s.d_position = columns(at_.d_position, n, p);
-  s.d_velocity = columns(at_.d_velocity, n, p);
+  s.d_position = at_.inputs.topRows(p).transpose();
+  s.d_velocity = at_.inputs.bottomRows(p).transpose();
   s.basis.resize(n, 0);
   s.hessenberg.resize(0, 0);
   s.by_position.resize(0, p);
   s.by_velocity.resize(0, p);
-  const MatrixXd force = columns(at_.force_d_states, n, p);
+  const MatrixXd force = at_.forces.transpose();
   s.start = append(s.lu->solve_transposed(force));
 }
 
@@ -136,7 +129,7 @@ Eigen::MatrixXcd FrequencyCoefficients::by_basis(Index blocks, double omega) con
 bool FrequencyCoefficients::by_krylov(double omega, Eigen::MatrixXcd& out) {
   constexpr Index most = 16;
   constexpr double enough = 1e-10, rounding = 1e-11, falls = 0.2;
-  if (!at_.force_d_rates.empty()) return false;
+  if (at_.force_rates.rows() > 0) return false;
   if (!space_) begin();
   Space& s = *space_;
   if (!s.known) return false;
@@ -185,11 +178,11 @@ Eigen::MatrixXcd FrequencyCoefficients::by_factors(double omega) const {
   const core::PivotedLu<Complex> lu(matrix.filled(at_.d_states, at_.d_rates, 1.0, iw));
   if (!lu.regular()) throw core::NotConverged("the film by itself is singular");
   MatrixXcd moved(n, p);
-  moved.real() = columns(at_.d_position, n, p);
-  moved.imag() = omega * columns(at_.d_velocity, n, p);
+  moved.real() = at_.inputs.topRows(p).transpose();
+  moved.imag() = omega * at_.inputs.bottomRows(p).transpose();
   const MatrixXcd s = lu.solve(moved);
-  MatrixXcd out = columns(at_.force_d_states, n, p).transpose().cast<Complex>() * s;
-  if (!at_.force_d_rates.empty()) out += iw * (columns(at_.force_d_rates, n, p).transpose().cast<Complex>() * s);
+  MatrixXcd out = at_.forces.cast<Complex>() * s;
+  if (at_.force_rates.rows() > 0) out += iw * (at_.force_rates.cast<Complex>() * s);
   return out;
 }
 

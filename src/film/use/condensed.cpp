@@ -197,7 +197,7 @@ void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, st
     const Eigen::MatrixXd slopes = steady_.slopes();
     for (std::size_t f = 0; f < ports.size(); ++f) {
       const auto i = static_cast<std::size_t>(ports[f]);
-      const Eigen::RowVectorXd by = thin(at.force_d_states[f]).transpose() * slopes;
+      const Eigen::RowVectorXd by = at.forces.row(static_cast<Eigen::Index>(f)) * slopes;
       const auto count = static_cast<Eigen::Index>(ports.size());
       for (Eigen::Index w = 0; w < count; ++w) {
         const auto j = static_cast<std::size_t>(ports[static_cast<std::size_t>(w)]);
@@ -209,10 +209,8 @@ void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, st
     remember(slopes, response);
     return;
   }
-  Eigen::MatrixXd by_states(n, static_cast<Eigen::Index>(ports.size()));
-  for (std::size_t f = 0; f < ports.size(); ++f)
-    by_states.col(static_cast<Eigen::Index>(f)) = thin(at.force_d_states[f]);
-  const Eigen::MatrixXd lambdas = steady_.solve_transposed(by_states);
+  const Eigen::MatrixXd lambdas = steady_.solve_transposed(at.forces.transpose());
+  const Eigen::MatrixXd by_inputs = at.inputs * lambdas;
   for (std::size_t f = 0; f < ports.size(); ++f) {
     const auto i = static_cast<std::size_t>(ports[f]);
     const auto lambda = lambdas.col(static_cast<Eigen::Index>(f));
@@ -220,11 +218,13 @@ void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, st
     Eigen::VectorXd by_rates = Eigen::VectorXd::Zero(n);
     for_entries(whole, whole.d_rates, at.d_rates,
                 [&](int row, int column, double value) { by_rates(column) -= lambda(row) * value; });
-    if (!at.force_d_rates.empty()) by_rates += thin(at.force_d_rates[f]);
+    const auto component = static_cast<Eigen::Index>(f);
+    if (at.force_rates.rows() > 0) by_rates += at.force_rates.row(component).transpose();
     for (std::size_t w = 0; w < ports.size(); ++w) {
       const auto j = static_cast<std::size_t>(ports[w]);
-      response.d_position[i][j] -= lambda.dot(thin(at.d_position[w]));
-      response.d_velocity[i][j] += by_rates.dot(thin(carried_rates_[w])) - lambda.dot(thin(at.d_velocity[w]));
+      const auto motion_of = static_cast<Eigen::Index>(w), rate_of = static_cast<Eigen::Index>(ports.size() + w);
+      response.d_position[i][j] -= by_inputs(motion_of, component);
+      response.d_velocity[i][j] += by_rates.dot(thin(carried_rates_[w])) - by_inputs(rate_of, component);
     }
     response.d_speed[i] -= lambda.dot(thin(at.d_speed));
   }

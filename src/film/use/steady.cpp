@@ -71,8 +71,8 @@ double Steady::distance(const StateResponse& at) const {
 // What a change of the states does to the forces, without what cancels.
 std::array<double, 4> Steady::effect(const Eigen::VectorXd& step) const {
   std::array<double, 4> out{};
-  for (std::size_t f = 0; f < linear_.force_d_states.size(); ++f)
-    out[f] = view(linear_.force_d_states[f]).cwiseAbs().dot(step.cwiseAbs());
+  for (Eigen::Index f = 0; f < linear_.forces.rows(); ++f)
+    out[static_cast<std::size_t>(f)] = linear_.forces.row(f).cwiseAbs().dot(step.cwiseAbs());
   return out;
 }
 
@@ -101,7 +101,8 @@ void Steady::take_last(const Eigen::VectorXd& step, std::vector<double>& states)
   }
   const auto ports = film_.ports();
   for (std::size_t f = 0; f < ports.size(); ++f)
-    linear_.journal.force[static_cast<std::size_t>(ports[f])] -= view(linear_.force_d_states[f]).dot(step);
+    linear_.journal.force[static_cast<std::size_t>(ports[f])] -=
+        linear_.forces.row(static_cast<Eigen::Index>(f)).dot(step);
   linear_.journal.min_thickness = film_.least_thickness(motion_, states);
 }
 
@@ -242,23 +243,21 @@ Eigen::MatrixXd Steady::solve_transposed(const Eigen::MatrixXd& b) {
 Eigen::MatrixXd Steady::slopes() {
   const auto ports = static_cast<Eigen::Index>(film_.ports().size());
   Eigen::MatrixXd rows(scale_.size(), 2 * ports + 1);
-  for (Eigen::Index p = 0; p < ports; ++p) {
-    rows.col(p) = view(linear_.d_position[static_cast<std::size_t>(p)]);
-    rows.col(ports + p) = view(linear_.d_velocity[static_cast<std::size_t>(p)]);
-  }
+  rows.leftCols(2 * ports) = linear_.inputs.transpose();
   rows.col(2 * ports) = view(linear_.d_speed);
   return -refined(rows, false);
 }
 
 void Steady::follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states) {
   constexpr double most = 0.5;
-  if (factored_.empty() || linear_.d_position.empty() || linear_.d_speed.empty()) return;
+  if (factored_.empty() || linear_.inputs.size() == 0 || linear_.d_speed.empty()) return;
   Eigen::VectorXd rows = (to.speed - from.speed) * view(linear_.d_speed);
   const auto ports = film_.ports();
   for (std::size_t p = 0; p < ports.size(); ++p) {
     const auto w = static_cast<std::size_t>(ports[p]);
-    rows += (to.position[w] - from.position[w]) * view(linear_.d_position[p]) +
-            (to.velocity[w] - from.velocity[w]) * view(linear_.d_velocity[p]);
+    const auto row = static_cast<Eigen::Index>(p), of_rates = static_cast<Eigen::Index>(ports.size());
+    rows += (to.position[w] - from.position[w]) * linear_.inputs.row(row).transpose() +
+            (to.velocity[w] - from.velocity[w]) * linear_.inputs.row(of_rates + row).transpose();
   }
   const Eigen::VectorXd change = band_ ? band_->solve(rows) : Eigen::VectorXd(lu_->solve(Eigen::MatrixXd(rows)));
   if (!(size(change) <= most)) return;

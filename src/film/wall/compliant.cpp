@@ -133,11 +133,11 @@ void CompliantFilm::integrate(Need need, StateResponse& response) {
   for (const Run& r : runs_)
     for (int k = r.node; k < r.node + r.count; ++k) {
       const std::size_t to = at(r.state + k - r.node);
-      response.force_d_states[0][to] = scale * (sx[k] * by_h[k] + fx[k] * stiff[k]);
-      response.force_d_states[1][to] = scale * (sy[k] * by_h[k] + fy[k] * stiff[k]);
+      response.of_force(0)[to] = scale * (sx[k] * by_h[k] + fx[k] * stiff[k]);
+      response.of_force(1)[to] = scale * (sy[k] * by_h[k] + fy[k] * stiff[k]);
       if (!liner_.damped()) continue;
-      response.force_d_rates[0][to] = scale * sx[k] * by_rate[k];
-      response.force_d_rates[1][to] = scale * sy[k] * by_rate[k];
+      response.of_force_rate(0)[to] = scale * sx[k] * by_rate[k];
+      response.of_force_rate(1)[to] = scale * sy[k] * by_rate[k];
     }
 }
 
@@ -219,9 +219,8 @@ void CompliantFilm::by_journal(StateResponse& response) const {
     return here + b0[k] * by[k - 1] * normal[k - 1] + b2[k] * by[k + 1] * normal[k + 1];
   };
   const double *by_u = around(carried_.by_u), *by_rate = around(carried_.by_rate);
-  double *by_speed = response.d_speed.data(), *by_x = response.d_position[0].data(),
-         *by_y = response.d_position[1].data(), *by_vx = response.d_velocity[0].data(),
-         *by_vy = response.d_velocity[1].data();
+  double *by_speed = response.d_speed.data(), *by_x = response.by_position(0), *by_y = response.by_position(1),
+         *by_vx = response.by_velocity(0), *by_vy = response.by_velocity(1);
   for (const Run& r : runs_)
     for (int k = r.node; k < r.node + r.count; ++k) {
       const std::size_t to = at(r.state + k - r.node);

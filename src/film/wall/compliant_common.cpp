@@ -117,18 +117,16 @@ PortColumns CompliantModel::carried_rates() const {
 
 void CompliantModel::resize(const Share& share, Need need, StateResponse& response) const {
   const bool tangents = need == Need::tangents;
-  const auto rows = static_cast<std::size_t>(share.rows()), n = tangents ? rows : 0, k = ports().size();
+  const auto rows = static_cast<std::size_t>(share.rows()), n = tangents ? rows : 0;
+  const auto k = std::ssize(ports());
   response.journal = {};
   response.residual.resize(rows);
   response.d_states.resize(tangents ? share.d_states.size() : 0);
   response.d_rates.resize(tangents ? share.d_rates.size() : 0);
   response.d_speed.resize(n);
-  response.force_d_rates.resize(liner_.damped() ? k : 0);
-  for (PortColumns* columns : {&response.d_position, &response.force_d_states}) columns->resize(k);
-  for (PortColumns* columns : {&response.d_position, &response.force_d_states, &response.force_d_rates})
-    for (std::vector<double>& column : *columns) column.resize(n);
-  response.d_velocity.resize(k);
-  for (std::vector<double>& column : response.d_velocity) column.assign(n, 0.0);
+  response.resize(tangents, k, share.rows());
+  if (liner_.damped()) response.force_rates.resizeLike(response.forces);
+  response.inputs.bottomRows(k).setZero();
 }
 
 std::array<NodalField, 4> CompliantModel::empty_fields(std::size_t along) const {

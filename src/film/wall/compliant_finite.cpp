@@ -127,8 +127,7 @@ void FiniteFilm::integrate(Lines part, Need need, StateResponse& response) {
     const std::array<double, 2> normal = this->normal(part.begin + i);
     const Array sx(&slope_[0][k], n), sy(&slope_[1][k], n), by_u(&carried_.by_u[x], n), by_h(&carried_.by_h[x], n),
         by_rate(&carried_.by_rate[x], n);
-    Eigen::Map<Eigen::ArrayXd> fx(response.force_d_states[0].data() + k, n),
-        fy(response.force_d_states[1].data() + k, n);
+    Eigen::Map<Eigen::ArrayXd> fx(response.of_force(0) + k, n), fy(response.of_force(1) + k, n);
     fx = scale * sx * by_h;
     fy = scale * sy * by_h;
     if (liner_.touches()) {
@@ -144,8 +143,8 @@ void FiniteFilm::integrate(Lines part, Need need, StateResponse& response) {
     };
     add(by_u, out.d_position);
     if (!liner_.damped()) continue;
-    Eigen::Map<Eigen::ArrayXd>(response.force_d_rates[0].data() + k, n) = scale * sx * by_rate;
-    Eigen::Map<Eigen::ArrayXd>(response.force_d_rates[1].data() + k, n) = scale * sy * by_rate;
+    Eigen::Map<Eigen::ArrayXd>(response.of_force_rate(0) + k, n) = scale * sx * by_rate;
+    Eigen::Map<Eigen::ArrayXd>(response.of_force_rate(1) + k, n) = scale * sy * by_rate;
     add(by_rate, out.d_velocity);
   }
 }
@@ -194,8 +193,8 @@ void FiniteFilm::hold(int i, int rows, int line, const JournalMotion& motion, co
   fill(response.d_speed.data(), 0.0);
   const std::array<double, 2> away_from = normal(line);
   for (std::size_t d = 0; d < 2; ++d) {
-    fill(response.d_position[d].data(), release() * away_from[d]);
-    fill(response.d_velocity[d].data(), away_from[d]);
+    fill(response.by_position(d), release() * away_from[d]);
+    fill(response.by_velocity(d), away_from[d]);
   }
 }
 
@@ -262,9 +261,9 @@ void FiniteFilm::by_journal(int i, int line, StateResponse& response) {
   const auto [cf, sf] = normal(line + 1);
   // Of the P that `by` moves with the journal.
   const auto through = [&, c = c, s = s, cb = cb, sb = sb, cf = cf, sf = sf](const std::vector<double>& by,
-                                                                             PortColumns& to) {
+                                                                             double* of_x, double* of_y) {
     const double *here = &by[x], *pb = here - stride, *pf = here + stride;
-    double* __restrict to_x = to[0].data() + begin, * __restrict to_y = to[1].data() + begin;
+    double* __restrict to_x = of_x + begin, * __restrict to_y = of_y + begin;
     for (int j = 0; j < n; ++j) {
       const double before = kb[j] * pb[j], after = ka[j] * pf[j],
                    centre =
@@ -273,12 +272,12 @@ void FiniteFilm::by_journal(int i, int line, StateResponse& response) {
       to_y[j] = centre * s - before * sb - after * sf;
     }
   };
-  through(carried_.by_u, response.d_position);
-  if (liner_.damped()) through(carried_.by_rate, response.d_velocity);
+  through(carried_.by_u, response.by_position(0), response.by_position(1));
+  if (liner_.damped()) through(carried_.by_rate, response.by_velocity(0), response.by_velocity(1));
   const double follow = edge_[at(i + reach())].by_rigid;
   for (const auto& [j, by_edge] : {std::pair{0, along_.q[x - 1]}, std::pair{n - 1, -along_.q[x + at(n - 1)]}}) {
-    response.d_position[0][begin + at(j)] -= by_edge * follow * c;
-    response.d_position[1][begin + at(j)] -= by_edge * follow * s;
+    response.by_position(0)[begin + at(j)] -= by_edge * follow * c;
+    response.by_position(1)[begin + at(j)] -= by_edge * follow * s;
   }
 }
 

@@ -21,14 +21,14 @@ void OwnBand<M>::read(const std::vector<const problem::PointState*>& points, std
   const double *column = scales.state_scale().data() + first, *row = scales.residual_scale().data() + first;
   std::vector<bool> seen(static_cast<std::size_t>(inputs_), false);
   for (Index j = 0; j < m(); ++j) {
-    const problem::OwnTangents& t = points[static_cast<std::size_t>(j)]->films.own[index];
+    const core::PartResponse& t = points[static_cast<std::size_t>(j)]->films.own[index];
     const auto put = [&](const std::vector<std::size_t>& places, const std::vector<double>& values,
                          std::vector<double>& to) {
       for (std::size_t e = 0; e < places.size(); ++e)
         to[places[e] * static_cast<std::size_t>(m()) + static_cast<std::size_t>(j)] += values[e];
     };
-    put(shape_.states, t.states, by_state_);
-    put(shape_.rates, t.rates, by_rate_);
+    put(shape_.states, t.d_states, by_state_);
+    put(shape_.rates, t.d_rates, by_rate_);
     force_rate_.resize(t.force_rates.rows() > 0 ? force_.size() : 0);
     for (Index a = 0; a < shape_.count; ++a) {
       for (Index f = 0; f < t.force_rates.rows(); ++f)

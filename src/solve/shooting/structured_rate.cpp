@@ -109,9 +109,9 @@ void StructuredRate::refresh() {
 void StructuredRate::follow_rates() {
   bool same = !rates_.empty();
   std::size_t from = 0;
-  for (const problem::OwnTangents& t : at_.films.own) {
-    same = same && std::equal(t.rates.begin(), t.rates.end(), rates_.begin() + static_cast<std::ptrdiff_t>(from));
-    from += t.rates.size();
+  for (const core::PartResponse& t : at_.films.own) {
+    same = same && std::equal(t.d_rates.begin(), t.d_rates.end(), rates_.begin() + static_cast<std::ptrdiff_t>(from));
+    from += t.d_rates.size();
   }
   if (same) return;
   const auto states = point_.state_scale().tail(size() - n_);
@@ -119,7 +119,7 @@ void StructuredRate::follow_rates() {
   factors_.clear();
   for (std::size_t i = 0; i < films_.size(); ++i) {
     const problem::OwnStates& own = films_[i].at;
-    const std::vector<double>& rates = at_.films.own[i].rates;
+    const std::vector<double>& rates = at_.films.own[i].d_rates;
     rates_.insert(rates_.end(), rates.begin(), rates.end());
     for (std::size_t e = 0; e < rates.size(); ++e) {
       const Index row = own.first + own.rates[e].row;
@@ -145,7 +145,7 @@ void StructuredRate::evaluate(double angle, const VectorXd& z, VectorXd& rate, R
   const double* factor = factors_.data();
   for (std::size_t i = 0; i < films_.size(); ++i) {
     const RateFilm& film = films_[i];
-    const problem::OwnTangents& t = at_.films.own[i];
+    const core::PartResponse& t = at_.films.own[i];
     const Index count = film.at.count;
     const auto scale = states.segment(n_ + film.at.first, count);
     const auto inverse = inverse_.segment(film.at.first, count);
@@ -163,7 +163,7 @@ void StructuredRate::evaluate(double angle, const VectorXd& z, VectorXd& rate, R
     }
     double* diagonals = a.data() + film.diagonals;
     std::fill(diagonals, a.data() + film.seen, 0.0);
-    for (std::size_t e = 0; e < film.entries.size(); ++e) diagonals[film.entries[e]] += *factor++ * t.states[e];
+    for (std::size_t e = 0; e < film.entries.size(); ++e) diagonals[film.entries[e]] += *factor++ * t.d_states[e];
   }
   // At the rates found: masses may depend on the parameter.
   at_.rate = rate.cwiseProduct(states);

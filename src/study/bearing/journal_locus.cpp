@@ -73,11 +73,10 @@ Eigen::SparseMatrix<double> JournalLocus::matrix(const Vector& closing) const {
   for (std::size_t port = 0; port < 2; ++port) {
     const Index column = n + static_cast<Index>(port);
     for (Index k = 0; k < n; ++k)
-      entries.emplace_back(k, column, at_.d_position[port][at_index(k)] * clearance_ / rows_[at_index(k)]);
+      entries.emplace_back(k, column, at_.inputs(static_cast<Eigen::Index>(port), k) * clearance_ / rows_[at_index(k)]);
     entries.emplace_back(n, column, at_.journal.d_position[0][port] * clearance_ / load_);
   }
-  for (Index k = 0; k < n; ++k)
-    entries.emplace_back(n, k, at_.force_d_states[0][at_index(k)] * scale_[at_index(k)] / load_);
+  for (Index k = 0; k < n; ++k) entries.emplace_back(n, k, at_.forces(0, k) * scale_[at_index(k)] / load_);
   for (Index k = 0; k < n + 2; ++k) entries.emplace_back(n + 1, k, closing(k));
   Eigen::SparseMatrix<double> out(n + 2, n + 2);
   out.setFromTriplets(entries.begin(), entries.end());

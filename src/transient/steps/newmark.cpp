@@ -141,7 +141,7 @@ bool NewmarkFixedPointSteps::solve(double time, double length, Vec u, Vec rate) 
       operator_.sigma = sigma(length);
       operator_.parameter = equations().system().parameter();
       operator_.at.films.d_inputs.setZero();
-      for (problem::OwnTangents& own : operator_.at.films.own) own.inputs.setZero();
+      for (core::PartResponse& own : operator_.at.films.own) own.inputs.setZero();
       inverse_.factorise_at(operator_);
       has_matrix_ = true;
     }

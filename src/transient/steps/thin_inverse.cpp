@@ -53,21 +53,21 @@ ThinInverse::Factors* ThinInverse::nearest(double tau, double parameter) {
 
 void ThinInverse::factorise_film(const ThinOperator& a, std::size_t which, Film& film) const {
   const problem::OwnStates& own = structure_.own()[which];
-  const problem::OwnTangents& t = a.at.films.own[which];
+  const core::PartResponse& t = a.at.films.own[which];
   const Index first = structure_.size() + own.first;
   const double tau = a.alpha / a.sigma;
   const auto columns = point_.state_scale().segment(first, own.count);
   const VectorXd rows = point_.residual_scale().segment(first, own.count).cwiseInverse();
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(t.states.size() + t.rates.size());
+  entries.reserve(t.d_states.size() + t.d_rates.size());
   const auto add = [&](const std::vector<problem::EntryPlace>& places, const std::vector<double>& values,
                        double factor) {
     for (std::size_t e = 0; e < places.size(); ++e)
       entries.emplace_back(places[e].row, places[e].column,
                            factor * values[e] * rows(places[e].row) * columns(places[e].column));
   };
-  add(own.states, t.states, tau);
-  add(own.rates, t.rates, 1);
+  add(own.states, t.d_states, tau);
+  add(own.rates, t.d_rates, 1);
   Sparse s(own.count, own.count);
   s.setFromTriplets(entries.begin(), entries.end());
   if (!film.lu.compute(s)) throw core::NotConverged("the matrix of a film's states is singular");
