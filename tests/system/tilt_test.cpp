@@ -13,6 +13,7 @@
 #include "whirl/problem/taylor.hpp"
 #include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/shaft.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 
 using namespace whirl;
 using Eigen::Index;
@@ -85,6 +86,36 @@ TEST(Tilt, AxesAsParameters) {
     EXPECT_EQ(s.axis(1), anew.axis(1));
     EXPECT_NE(s.axis(1)[1], before);
   }
+}
+
+// Nothing but one film holds the shaft. By itself it moves as a rigid body without a force, so that the matrix of the
+// shaft has no inverse; with the film's part eliminated into it there is one.
+TEST(Tilt, AFreeShaftOnOneFilmIsSolvedAtRest) {
+  system::Train t = test::overhung_with_states();
+  t.supports.erase(t.supports.begin());
+  t.supports[0].slope = {{0, 0}};
+  system::RotorSystem s(MPI_COMM_WORLD, t, speed);
+  core::Vector x = core::make_vector(MPI_COMM_WORLD, s.local_size(), PETSC_DETERMINE);
+  s.displace(x.get(), {0.2, -0.5});
+  solve::EquilibriumProblem problem(s, speed, 1);
+  core::Vector u = problem.make_unknown(), row = core::duplicate(u.get()), right = core::duplicate(u.get()),
+               answer = core::duplicate(u.get()), back = core::duplicate(u.get());
+  problem.from_state(x.get(), speed, u.get());
+  solve::parameter_row(problem, row.get());
+  problem.linearise(u.get(), row.get());
+  core::check(VecSet(right.get(), 0.0));
+  disturb(right.get(), 1e-3);
+  problem.solve(right.get(), answer.get());
+  problem.multiply(answer.get(), back.get());
+  core::check(VecAXPY(back.get(), -1, right.get()));
+  ASSERT_TRUE(std::isfinite(core::norm(answer.get())));
+  EXPECT_LE(core::norm(back.get()), 1e-9 * core::norm(right.get()));
+
+  if (core::size_of(MPI_COMM_WORLD) > 1) return;
+  const MatrixXd shaft = s.structure()->l0();
+  VectorXd rigid = VectorXd::Zero(shaft.cols());
+  for (int node = 1; node <= 7; ++node) rigid(2 * s.rotor().coordinate(node, rotor::Freedom::x)) = 1;
+  EXPECT_LE((shaft * rigid).norm(), 1e-9 * shaft.norm());
 }
 
 // The blocks that structured solvers see give F and J of the matrices, with films with and without states.
