@@ -19,6 +19,10 @@ void describe(deck::Description<Brusselator>& d) {
   d.add("b", &O::b, "1", deck::positive, "B, by which the first substance turns into the second one").continuable();
   d.add("diffusion_u", &O::diffusion_u, "1", deck::positive, "D_u, diffusion of the first substance").continuable();
   d.add("diffusion_v", &O::diffusion_v, "1", deck::positive, "D_v, diffusion of the second one").continuable();
+  d.add("amplitude", &O::amplitude, "1", deck::at_least(0),
+        "of the force on the first substance, 0-peak; above zero there are forced cycles")
+      .continuable();
+  d.add("frequency", &O::frequency, "rad/s", deck::positive, "of the force; the speed of its motions").continuable();
 }
 
 namespace {
@@ -26,7 +30,11 @@ namespace {
 class BrusselatorSystem final : public Plant {
 public:
   BrusselatorSystem(MPI_Comm comm, OptionsAlong<Brusselator> along)
-      : comm_(comm), along_(std::move(along)), parameter_(along_.value), o_(along_.at(parameter_)) {
+      : comm_(comm),
+        along_(std::move(along)),
+        parameter_(along_.value),
+        o_(along_.at(parameter_)),
+        by_speed_(follows_speed(parameter_) && follows_speed(parameter_ + 1e-5 * along_.magnitude)) {
     const PetscInt points = o_.cells - 1;
     const int rank = core::rank_of(comm), size = core::size_of(comm);
     n_ = 2 * points;
@@ -45,11 +53,12 @@ public:
     o_ = along_.at(p);  // may refuse the value, and then nothing has changed
     parameter_ = p;
   }
-  // It has no shaft: one radian of the angle is a second.
-  [[nodiscard]] double speed() const override { return 1; }
-  [[nodiscard]] bool parameter_is_speed() const override { return false; }
+  [[nodiscard]] double speed() const override { return o_.frequency; }
+  [[nodiscard]] bool parameter_is_speed() const override { return by_speed_; }
+  void set_forcing(bool on) override { forced_ = on; }
+  [[nodiscard]] bool forced() const override { return o_.forced_at().has_value(); }
 
-  void residual(double /*angle*/, Vec x, Vec xdot, Vec f) override { residual(o_, x, xdot, f); }
+  void residual(double angle, Vec x, Vec xdot, Vec f) override { residual(o_, angle, x, xdot, f); }
   [[nodiscard]] core::Matrix make_jacobian() override {
     core::Matrix m;
     check(MatCreateAIJ(comm_, local_, local_, n_, n_, 4, nullptr, 2, nullptr, m.put()));
@@ -77,11 +86,11 @@ public:
     check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
     check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
   }
-  void parameter_derivative(double /*angle*/, Vec x, Vec xdot, Vec f) override {
+  void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) override {
     const double step = 1e-5 * along_.magnitude;
     const core::Vector minus = core::duplicate(f);
-    residual(along_.at(parameter_ + step), x, xdot, f);
-    residual(along_.at(parameter_ - step), x, xdot, minus.get());
+    residual(along_.at(parameter_ + step), angle, x, xdot, f);
+    residual(along_.at(parameter_ - step), angle, x, xdot, minus.get());
     check(VecAXPBY(f, -1 / (2 * step), 1 / (2 * step), minus.get()));
   }
   void scales(Vec state, Vec residual) override {
@@ -113,6 +122,7 @@ public:
   [[nodiscard]] bool constant_rates() const override { return true; }
 
 private:
+  [[nodiscard]] bool follows_speed(double p) const { return along_.at(p).frequency == p; }
   // Diffusion between neighbouring points, D/(L dz)^2.
   [[nodiscard]] static double exchange(const Brusselator& o, double diffusion) {
     return diffusion * o.cells * o.cells / (o.length * o.length);
@@ -131,13 +141,14 @@ private:
             exchange(o, o.diffusion_v) * v_zz - u * u * v + o.b * u};
   }
 
-  void residual(const Brusselator& o, Vec x, Vec xdot, Vec f) {
+  void residual(const Brusselator& o, double angle, Vec x, Vec xdot, Vec f) {
     gather_whole(x);
+    const double force = forced_ ? o.amplitude * std::cos(angle) : 0;
     const core::ReadArray z(whole_.get()), rates(xdot);
     const core::WriteArray out(f);
     for (PetscInt k = 0; k < local_; k += 2) {
       const auto [u, v] = production(o, z, begin_ + k / 2);
-      out[k] = rates[k] - u;
+      out[k] = rates[k] - u - force;
       out[k + 1] = rates[k + 1] - v;
     }
   }
@@ -150,6 +161,8 @@ private:
   OptionsAlong<Brusselator> along_;
   double parameter_;
   Brusselator o_;
+  bool by_speed_;  // the parameter is the frequency of the force
+  bool forced_ = true;
   PetscInt n_ = 0, begin_ = 0, local_ = 0;  // states in all; first point and states on this rank
   core::Vector layout_, whole_;
   core::Scatter scatter_;

@@ -22,6 +22,15 @@ void describe_others(deck::Description<Machine>& d) {
   });
 }
 
+std::optional<double> own_forcing(const Machine& machine) {
+  std::optional<double> speed;
+  for_each(all, [&]<class K>(const K&) {
+    if constexpr (requires(const K& k) { k.forced_at(); })
+      if (K::key == machine.system.name) speed = static_cast<const Slot<K>&>(machine).options.forced_at();
+  });
+  return speed;
+}
+
 std::unique_ptr<Plant> make_other(MPI_Comm comm, const OptionsAlong<Machine>& along) {
   const std::string wanted = along.at(along.value).system.name;
   std::unique_ptr<Plant> made;

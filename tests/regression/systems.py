@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The Brusselator and small flows through decks: Hopf point, cycles by every method, a motion, and what a deck of it must not ask.
+"""The Brusselator and small flows through decks: Hopf point, cycles by every method, a force, a motion, and what a deck of it must not ask.
 
 systems.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
@@ -88,6 +88,47 @@ def whole(h):
     h.true("and not zero", value(motion, "lyapunov.2.uncertainty") < 0.3 * 0.0812)
 
 
+def linear_response(cells, length, amplitude, frequency, a=2, b=5.45, diffusion=(0.008, 0.004)):
+    """Peak to peak in the middle of the tube under a small force: each half wave of the tube by itself, two equations."""
+    out = [0, 0]
+    for mode in range(1, cells):
+        share = 2 / cells * sum(math.sin(mode * math.pi * i / cells) for i in range(1, cells))
+        wave = (2 * cells * math.sin(mode * math.pi / (2 * cells)) / length) ** 2
+        top, bottom = 1j * frequency - (b - 1) + diffusion[0] * wave, 1j * frequency + a * a + diffusion[1] * wave
+        force = amplitude * share * math.sin(mode * math.pi / 2) / (top * bottom + a * a * b)
+        out = [out[0] + force * bottom, out[1] - force * b]
+    return [2 * abs(z) for z in out]
+
+
+# The deck of the forced oscillator: where the multipliers of its cycle lie on the unit circle, and the cycle at an amplitude of
+# 0.6, by Newton's method on one period of SciPy's DOP853 (relative tolerance 1e-12) with the variational equations.
+FOLLOWS, ANGLE, PEAKS, MODULUS = 0.293845731, 1.976220139, (1.63661057, 1.67511176), 0.68689054
+
+
+def forced(h):
+    """A periodic feed: the linear response in closed form, and where the motion follows the feed."""
+    base = h.source / "inputs/other_systems/forced_brusselator.yaml"
+    cycle = "{name: small, parameter: brusselator.frequency, range: {from: 1.8 rad/s, to: 2.2 rad/s}, tolerance: 1e-11,"
+    small = h.run(base, "small", ["brusselator.length=0.4", "brusselator.amplitude=1e-4", "bars=none",
+                                  "studies=[{cycle_branch: " + cycle + " step: {initial: 0.1 rad/s, min: 1e-4 rad/s, max: 0.2 rad/s},"
+                                  " intervals: 30, degree: 4, at: [1.8 rad/s, 2.2 rad/s]}}]"])["small"]
+    for frequency in (1.8, 2.2):
+        for axis, exact in zip("xy", linear_response(16, 0.4, 1e-4, frequency)):
+            h.close(f"small force at {frequency} rad/s, {axis}", value(small, f"at.{frequency}.peak_to_peak.middle.{axis}") / exact, 1, 2e-5)
+    following = h.run(base, "following")["following"]
+    point = following["bifurcations"][0]
+    h.true("a Neimark-Sacker point, stable above", point["type"] == "neimark_sacker" and point["stable_side"] == "above", str(point))
+    h.close("its amplitude", point["value"], FOLLOWS, 1e-6)
+    h.close("its angle [rad]", point["angle_rad"], ANGLE, 1e-6)
+    for axis, exact in zip("xy", PEAKS):
+        h.close(f"travel at 0.6, {axis}", value(following, f"at.0.6.peak_to_peak.middle.{axis}"), exact, 1e-5)
+    h.close("largest multiplier", value(following, "at.0.6.multiplier.modulus"), MODULUS, 1e-6)
+    for amplitude, kind in ((0.2, "quasi_periodic"), (0.6, "period-1")):
+        motion = h.run(base, f"motion_{amplitude}", [f"brusselator.amplitude={amplitude}", "studies=[{motion: {name: motion, speed: 3 rad/s,"
+                                                     " discard: 40, revolutions: 100, tolerance: 1e-6, start: {offset: [0.1, 0]}}}]"])["motion"]
+        h.true(f"amplitude {amplitude}: {kind}", f"motion.{kind}" in motion["values"], str(list(motion["values"])[:3]))
+
+
 def refused(h):
     """Each wrong deck gets a place, a reason and where possible the right key."""
     rest = "equilibrium_branch: {parameter: brusselator.length, range: {from: 0.4, to: 1.2}}"
@@ -102,6 +143,8 @@ def refused(h):
         ("  - equilibrium_branch: {range: {from: 1 rpm, to: 2 rpm}}\n", 3, 25, "a brusselator has no 'speed'"),
         ("  - cycle_branch: {parameter: brusselator.length, range: {from: 0.4, to: 1.2}}\n", 3, 19,
          "'unbalance' is missing"),
+        (f"  - {rest}\nbrusselator: {{amplitude: -0.1}}\n", 4, 26, "amplitude"),
+        ("  - motion: {speed: 2 rad/s}\nbrusselator: {amplitude: 0.1, frequency: 3 rad/s}\n", 3, 21, "its speed is 3 rad/s"),
     ]
     for k, (studies, line, column, text) in enumerate(cases):
         path = deck(h, f"wrong_{k}", studies)
@@ -112,7 +155,7 @@ def refused(h):
 
 def main():
     h = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"whole": lambda: whole(h), "refused": lambda: refused(h),
+    {"whole": lambda: whole(h), "forced": lambda: forced(h), "refused": lambda: refused(h),
      "flows": lambda: flows(h), "flows.whole": lambda: flows(h, whole=True), "direct": lambda: cycles(h, ["collocation", "shooting"], 16),
      "others": lambda: cycles(h, ["multiple_shooting", "finite_difference", "newton_picard_short"], 8), "newton_picard": lambda: cycles(h, ["newton_picard"], 8)}[sys.argv[3]]()
     h.finish()

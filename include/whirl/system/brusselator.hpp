@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "whirl/deck/description.hpp"
@@ -19,8 +20,9 @@ struct OptionsAlong {
 };
 
 /// du/dt = (Du/L^2) u_zz + u^2 v - (B + 1) u + A, dv/dt = (Dv/L^2) v_zz - u^2 v + B u on 0 < z < 1 with u = A, v = B/A
-/// at both ends; all dimensionless, time in seconds. Source: van de Vrande (2001), Sec. 3.2, after Holodniok et al.
-/// (1987).
+/// at both ends; all dimensionless, time in seconds. A force adds amplitude cos(frequency t) to du/dt in all of the
+/// tube; a motion takes its frequency as speed. Source: van de Vrande (2001), Sec. 3.2, after Holodniok et al. (1987);
+/// of the force, Tomita and Kai (1978).
 struct Brusselator {
   static constexpr std::string_view key = "brusselator";
   static constexpr std::string_view text = "a chemical oscillator in a tube, van de Vrande (2001), Sec. 3.2";
@@ -28,6 +30,11 @@ struct Brusselator {
   double length = 1;       ///< L
   double a = 2, b = 5.45;  ///< A, B
   double diffusion_u = 0.008, diffusion_v = 0.004;
+  double amplitude = 0;  ///< 0: no force
+  double frequency = 1;  ///< rad/s
+  [[nodiscard]] std::optional<double> forced_at() const {
+    return amplitude > 0 ? std::optional(frequency) : std::nullopt;
+  }
 };
 void describe(deck::Description<Brusselator>& d);
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "whirl/deck/description.hpp"
@@ -32,6 +33,7 @@ struct Duffing {
   static constexpr std::string_view key = "duffing", text = "a forced oscillator with a cubic spring, Duffing (1918)";
   double damping = 0.3, linear = -1, cubic = 1, amplitude = 0.5;
   double frequency = 1.2;  ///< rad/s
+  [[nodiscard]] std::optional<double> forced_at() const { return frequency; }
 };
 void describe(deck::Description<Duffing>& d);
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,9 @@ struct SystemName {
 }
 
 struct Machine;
+
+/// The speed [rad/s] at which a machine that is no rotor forces itself; nothing if it does not, and of rotors.
+[[nodiscard]] std::optional<double> own_forcing(const Machine& machine);
 
 /// The system named by a machine that is no rotor, as a function of a parameter. Collective.
 [[nodiscard]] std::unique_ptr<Plant> make_other(MPI_Comm comm, const OptionsAlong<Machine>& along);

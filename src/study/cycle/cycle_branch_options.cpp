@@ -155,12 +155,7 @@ void CycleBranch::validate(const system::Machine& machine, const deck::Report& r
   else if (!options.nodes.empty())
     report.fail("nodes", "this system has no shaft");
   const bool forced = options.origin == CycleBranchOptions::Origin::equilibrium;
-  // Other systems than rotors may be forced by themselves.
-  const auto forces_itself = [&machine] {
-    return !system::is_rotor(machine) &&
-           system::make_other(MPI_COMM_SELF, {[&machine](double) { return machine; }, 0, 1})->forced();
-  };
-  if (forced && options.unbalance.empty() && !forces_itself())
+  if (forced && options.unbalance.empty() && !system::own_forcing(machine))
     report.fail("", "'unbalance' is missing (forced cycles need a force; self-excited ones have 'origin: hopf')");
   if (!forced && !options.unbalance.empty())
     report.fail("unbalance", "self-excited cycles (origin: hopf) are those of the balanced machine");

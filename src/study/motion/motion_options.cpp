@@ -95,11 +95,9 @@ void Motion::validate(const system::Machine& machine, const deck::Report& report
     report.fail("exponents",
                 fmt::format("Lyapunov exponents are carried along by sdirk4 only; with {} say `exponents: 0`",
                             transient::name_of(options.integrator.scheme)));
-  const double forcing = static_cast<const system::Slot<system::Duffing>&>(machine).options.frequency;
-  if (system::name_of(machine.system) == system::Duffing::key && options.speed.value != forcing)
-    report.fail(
-        "speed",
-        fmt::format("a motion of 'duffing' goes by the periods of its force: its speed is {:.12g} rad/s", forcing));
+  if (const auto forcing = system::own_forcing(machine); forcing && options.speed.value != *forcing)
+    report.fail("speed", fmt::format("a motion of '{}' goes by the periods of its force: its speed is {:.12g} rad/s",
+                                     system::name_of(machine.system), *forcing));
 }
 
 double Motion::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
