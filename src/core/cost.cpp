@@ -2,23 +2,12 @@
 
 namespace whirl::core::cost {
 
-// Blocks of the Jacobian are added and scaled 25 times over.
-double dense_step(std::int64_t states) {
-  const auto n = static_cast<double>(states);
-  return n * n * n / 3 + 25 * scattered * n * n;
-}
-
-// Entry by entry into the matrix and into the factors.
-double sparse_step(std::int64_t entries) {
-  return call + 190 * scattered * static_cast<double>(entries);
-}
-
-double dense_product(std::int64_t states) {
-  return streamed * static_cast<double>(states * states);
-}
-
-double sparse_product(std::int64_t entries) {
-  return scattered * static_cast<double>(entries) + 2000;
+// In a step the blocks of a dense Jacobian are added and scaled 25 times over; a sparse one goes entry by entry into
+// the matrix and into the factors. The call of a sparse product takes 2000.
+bool dense_is_cheaper(Work work, std::int64_t states, std::int64_t entries) {
+  const auto n = static_cast<double>(states), sparse = scattered * static_cast<double>(entries);
+  if (work == Work::product) return streamed * n * n <= sparse + 2000;
+  return n * n * n / 3 + 25 * scattered * n * n < call + 190 * sparse;
 }
 
 // Each state of a level takes 170 with what is done for it on all coarser levels.

@@ -25,7 +25,7 @@ solve::Cycle guess(int cells) {
   static const solve::Cycle coarse = [] {
     test::Brusselator s(PETSC_COMM_SELF, 8);
     problem::ScaledPoint point(s, nullptr);
-    solve::RungeKutta stepper(point, solve::classical());
+    solve::RungeKutta stepper(solve::dense_stages(point), solve::classical());
     const int per_period = 240;
     const double period = 3.432;
     Eigen::VectorXd x = s.disturbed();

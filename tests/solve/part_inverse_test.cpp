@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "solve/shooting/port_stages.hpp"
 #include "support/petsc_options.hpp"
 #include "support/small_system.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/shooting/runge_kutta.hpp"
 
 using namespace whirl;
 using test::Column;
@@ -131,19 +131,19 @@ TEST(PartInverses, MayLeaveTheHubSingular) {
 // Steps that are kept, each with its elimination.
 TEST(PartInverses, AreAskedForOnceWhereThereAreNone) {
   WithoutInverses s(2, 1);
-  const auto stages = solve::PortStages::make(s);
-  core::Vector x = s.vector(Eigen::VectorXd::Constant(n, 0.3)), still = s.vector(Eigen::VectorXd::Zero(n)),
-               k = core::duplicate(x.get()), product = core::duplicate(x.get());
-  const double own = 0.1;
-  core::Matrix a = s.make_jacobian();
-  s.jacobian(0, x.get(), still.get(), own, 1, a.get());
-  std::vector<std::shared_ptr<const solve::StageSolver>> kept;
-  for (int step = 0; step < 3; ++step) {
-    stages->begin_step();
-    kept.push_back(stages->solver(a.get(), 0, x.get(), still.get(), own));
-    kept.back()->solve(x.get(), k.get(), 1e-12);
-    core::check(MatMult(a.get(), k.get(), product.get()));
-    EXPECT_LT((s.gather(product.get()) - s.gather(x.get())).norm(), 1e-11);
+  solve::RungeKutta scheme(solve::sparse_stages(s, false), solve::sdirk(2));
+  const Eigen::VectorXd v = Eigen::VectorXd::Constant(s.local_size(), 0.7);
+  Eigen::VectorXd x = Eigen::VectorXd::Constant(s.local_size(), 0.3);
+  const double length = 0.1, h = 1e-4;
+  std::vector<solve::StepDerivative> kept(3);
+  for (solve::StepDerivative& derivative : kept) {
+    Eigen::VectorXd ahead = x + h * v, behind = x - h * v;
+    scheme.step(0, 0, length, ahead, nullptr);
+    scheme.step(0, 0, length, behind, nullptr);
+    scheme.step(0, 0, length, x, &derivative);
+    Eigen::MatrixXd moved = v;
+    derivative.carry(moved);
+    EXPECT_LT(((ahead - behind) / (2 * h) - moved).norm(), 1e-6);
   }
   EXPECT_EQ(s.asked, 1);
 }

@@ -123,10 +123,13 @@ TEST(Shooting, StepTangentsAreThoseOfTheDocument) {
   const Vector k1 = f(u);
   const auto compare = [&](const solve::Tableau& t, const Matrix& g, const Vector& b_t) {
     Eigen::VectorXd x = u;
-    Eigen::MatrixXd tangents;
-    solve::RungeKutta(point, t).step(0, 0, dt, x, &tangents);
-    EXPECT_LE((tangents.leftCols(2) - g).cwiseAbs().maxCoeff(), 1e-14) << t.order;
-    EXPECT_LE((tangents.col(2) - b_t).cwiseAbs().maxCoeff(), 1e-14) << t.order;
+    Eigen::MatrixXd tangents = one;
+    solve::RungeKutta stepper(solve::dense_stages(point), t);
+    solve::StepDerivative derivative;
+    stepper.step(0, 0, dt, x, &derivative);
+    derivative.carry(tangents);
+    EXPECT_LE((tangents - g).cwiseAbs().maxCoeff(), 1e-14) << t.order;
+    EXPECT_LE((derivative.d_length() - b_t).cwiseAbs().maxCoeff(), 1e-14) << t.order;
   };
   {
     const Vector k2 = f(u + dt * k1);

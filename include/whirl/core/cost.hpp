@@ -18,13 +18,10 @@ inline constexpr double call = 4.5e6;
 /// An exchange with a neighbour, 5 us.
 inline constexpr double message = 1.65e5;
 
-/// A step in time of n states by the factors of a dense Jacobian, and of a sparse one with so many entries by MUMPS.
-[[nodiscard]] double dense_step(std::int64_t states);
-[[nodiscard]] double sparse_step(std::int64_t entries);
-
-/// A product of one vector with a dense matrix, and with a sparse one of PETSc, whose call takes 2000.
-[[nodiscard]] double dense_product(std::int64_t states);
-[[nodiscard]] double sparse_product(std::int64_t entries);
+/// Whether a dense matrix of so many states costs less than a sparse one of PETSc with so many entries: in a step in
+/// time with its factors, those of MUMPS where it is sparse, or in a product with one vector.
+enum class Work { step, product };
+[[nodiscard]] bool dense_is_cheaper(Work work, std::int64_t states, std::int64_t entries);
 
 /// All lines of a level of a multigrid cycle on every rank instead of a share on each: what that adds in arithmetic,
 /// and what the level's four exchanges cost.

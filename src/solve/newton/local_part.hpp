@@ -1,20 +1,11 @@
 #pragma once
-// This rank's entries of a distributed vector as an Eigen vector.
+// Parts of vectors by their names alone.
 
-#include <Eigen/Core>
-
-#include "whirl/core/petsc.hpp"
+#include "whirl/core/local_part.hpp"
 
 namespace whirl::solve {
 
-inline void put(const Eigen::VectorXd& values, Vec v) {
-  const core::WriteArray a(v);
-  Eigen::Map<Eigen::VectorXd>(a.data(), values.size()) = values;
-}
-
-[[nodiscard]] inline Eigen::VectorXd get(Vec v) {
-  const core::ReadArray a(v);
-  return Eigen::Map<const Eigen::VectorXd>(a.data(), a.size());
-}
+using core::get;
+using core::put;
 
 }  // namespace whirl::solve

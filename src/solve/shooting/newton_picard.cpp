@@ -1,7 +1,5 @@
 #include "whirl/solve/shooting/newton_picard.hpp"
 
-#include "solve/newton/local_part.hpp"
-#include "solve/shooting/sparse_step.hpp"
 #include "whirl/core/index.hpp"
 
 namespace whirl::solve {
@@ -16,26 +14,17 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
                                          int steps, std::vector<double> mesh)
     : SpreadCycle(system, options, make_scheme(1, Points::radau), std::move(mesh), false, TimeGroups(system.comm())),
       steps_(steps),
-      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau), options.constant_rates,
-                                                  options.autonomous || system.parameter_is_speed())) {
+      stepper_(choose_stages(system, tableau, options.constant_rates, nullptr), tableau,
+               options.autonomous || system.parameter_is_speed()) {
+  core::require(tableau.sequential(), "steps distributed in space need a scheme with sequential stages");
   core::require(steps > 0, "shooting needs at least one step per interval");
 }
 
-NewtonPicardProblem::~NewtonPicardProblem() = default;
-
-bool NewtonPicardProblem::structured() const {
-  return stepper_->product_is_free();
-}
-
-void NewtonPicardProblem::refresh() {
-  stepper_->refresh();
-}
-
 // Carries x over interval i; with `links`, keeps the products of its steps and fills -d phi/d(border).
-void NewtonPicardProblem::march(Index i, double period, Vec x, Links* links) {
+void NewtonPicardProblem::march(Index i, double period, VectorXd& x, Links* links) {
   const double begin = mesh()[at(i)], h = length(i) / steps_;
   if (!links) {
-    for (int k = 0; k < steps_; ++k) stepper_->step(angle(begin + k * h), angle(h), h * period, x, nullptr);
+    for (int k = 0; k < steps_; ++k) stepper_.step(angle(begin + k * h), angle(h), h * period, x, nullptr);
     return;
   }
   MatrixXd& columns = links->columns[at(i)];
@@ -44,9 +33,9 @@ void NewtonPicardProblem::march(Index i, double period, Vec x, Links* links) {
   steps.resize(static_cast<std::size_t>(steps_));
   const bool by_speed = !options().autonomous && system().parameter_is_speed();
   for (int k = 0; k < steps_; ++k) {
-    StepProduct& step = steps[at(k)];
-    stepper_->step(angle(begin + k * h), angle(h), h * period, x, &step);
-    if (k > 0) step.apply(columns);
+    StepDerivative& step = steps[at(k)];
+    stepper_.step(angle(begin + k * h), angle(h), h * period, x, &step);
+    if (k > 0) step.carry(columns);
     columns.col(borders() - 1) -= options().parameter_scale * step.d_parameter();
     if (by_speed)
       columns.col(borders() - 1) += options().parameter_scale * h * period / system().speed() * step.d_length();
@@ -63,9 +52,9 @@ void NewtonPicardProblem::march_all(const MatrixXd& x, double period, MatrixXd& 
   }
   ends.resize(local(), intervals());
   for (Index i = 0; i < intervals(); ++i) {
-    put(x.col(i), work());
-    march(i, period, work(), links);
-    ends.col(i) = get(work());
+    VectorXd end = x.col(i);
+    march(i, period, end, links);
+    ends.col(i) = end;
   }
   if (links) {
     links->x = x;
@@ -75,14 +64,14 @@ void NewtonPicardProblem::march_all(const MatrixXd& x, double period, MatrixXd& 
 }
 
 void NewtonPicardProblem::residuals(const MatrixXd& x, double period, MatrixXd& r) {
-  march_all(x, period, r, stepper_->product_is_free() ? &next_ : nullptr);
+  march_all(x, period, r, structured() ? &next_ : nullptr);
   r = x.rightCols(intervals()) - r;
 }
 
 void NewtonPicardProblem::linearise_intervals(const MatrixXd& x, double period) {
   // The residual at x may have left its links behind; they are exchanged, because those of this linearisation are
   // wanted until the next one.
-  int known = stepper_->product_is_free() && next_.x.cols() == x.cols() && next_.period == period &&
+  int known = structured() && next_.x.cols() == x.cols() && next_.period == period &&
               next_.parameter == system().parameter() && next_.x == x;
   MPI_Allreduce(MPI_IN_PLACE, &known, 1, MPI_INT, MPI_LAND, comm());
   if (known != 0) {
@@ -101,7 +90,7 @@ const MatrixXd& NewtonPicardProblem::columns(Index i) const {
 MatrixXd NewtonPicardProblem::advance(Index i, const MatrixXd& start, const MatrixXd* rhs, bool rest) const {
   if (rest) return rhs ? *rhs : start;
   MatrixXd x = start;
-  for (const StepProduct& step : links_.steps[at(i)]) step.apply(x);
+  for (const StepDerivative& step : links_.steps[at(i)]) step.carry(x);
   if (rhs) x += *rhs;
   return x;
 }
@@ -111,10 +100,7 @@ VectorXd NewtonPicardProblem::product(Index i, const VectorXd& start, const Vect
 }
 
 VectorXd NewtonPicardProblem::reference_rate(const MatrixXd& x, double /*period*/, Index i, Index /*l*/) {
-  const core::Vector state = core::duplicate(work()), slope = core::duplicate(work());
-  put(x.col(i + 1), state.get());
-  stepper_->rate(0, state.get(), slope.get());
-  return get(slope.get());
+  return stepper_.rate(0, x.col(i + 1));
 }
 
 Cycle NewtonPicardProblem::orbit(Vec u) {
@@ -122,13 +108,12 @@ Cycle NewtonPicardProblem::orbit(Vec u) {
   const Cycle ends = gather(u);
   Cycle points{refined(mesh(), steps_), MatrixXd(local(), intervals() * steps_), ends.period, ends.parameter};
   const MatrixXd x = nodes(u);
-  core::Vector state = core::duplicate(work());
   for (Index i = 0; i < intervals(); ++i) {
-    put(x.col(i), state.get());
+    VectorXd state = x.col(i);
     const double begin = mesh()[at(i)], h = length(i) / steps_;
     for (int k = 0; k < steps_; ++k) {
-      stepper_->step(angle(begin + k * h), angle(h), h * period, state.get(), nullptr);
-      points.x.col(i * steps_ + k) = state_scale().cwiseProduct(get(state.get()));
+      stepper_.step(angle(begin + k * h), angle(h), h * period, state, nullptr);
+      points.x.col(i * steps_ + k) = state_scale().cwiseProduct(state);
     }
   }
   return through(points);

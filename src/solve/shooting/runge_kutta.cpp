@@ -1,114 +1,137 @@
 #include "whirl/solve/shooting/runge_kutta.hpp"
 
-#include <vector>
+#include <cmath>
 
-#include "whirl/core/dense_lu.hpp"
-#include "whirl/core/error.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/index.hpp"
 
 namespace whirl::solve {
-namespace {
 
+using core::at;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int max_iterations = 20;
+namespace {
 
-// Newton converges quadratically: a correction this small leaves an error at the level of rounding.
-bool arrived(const VectorXd& d_slope, double length, const VectorXd& x) {
-  return length * d_slope.lpNorm<Eigen::Infinity>() <= 1e-9 * (1 + x.lpNorm<Eigen::Infinity>());
-}
-
-[[noreturn]] void fail() {
-  throw core::DomainError("a stage of the Runge-Kutta step was not solved");
-}
+constexpr int most_corrections = 20;
+constexpr double slow_chord = 0.2;  // pays for a new one
 
 }  // namespace
 
-// One stage whose earlier slopes are known.
-void RungeKutta::solve_stage(Index j, double angle, double length, const VectorXd& x, MatrixXd& slopes) {
-  const double own = tableau_.a(j, j);
-  VectorXd base = x, f(x.size()), k = j > 0 ? VectorXd(slopes.col(j - 1)) : VectorXd::Zero(x.size());
-  base += length * (slopes.leftCols(j) * tableau_.a.row(j).head(j).transpose());
-  MatrixXd jx, jxdot;
+std::unique_ptr<Stages> choose_stages(problem::System& system, const Tableau& tableau, bool constant_rates,
+                                      problem::ScaledPoint* point) {
+  if (constant_rates)
+    if (auto structured = structured_stages(system, tableau)) return structured;
+  return point ? dense_stages(*point) : sparse_stages(system, constant_rates);
+}
+
+// In all stages dF/dx (v + lift_j + H sum_l a(j,l) dk_l) + dF/d(dx/dt) dk_j (+ dF/dp) = 0.
+void StepDerivative::change(MatrixXd& v, const MatrixXd* lifts, bool loaded) const {
+  const Tableau& t = scheme_->tableau_;
+  const Index n = v.rows(), m = scheme_->together_;
+  MatrixXd& dk = scheme_->dk_;
+  carry_stages(t, m, length_, v, scheme_->w_, dk, [&](Index first, MatrixXd& w, auto of_group) {
+    for (Index j = 0; lifts && j < m; ++j) w.col(0).segment(j * n, n) += lifts->col(first + j);
+    stages_[at(first / m)]->slopes(w, loaded, of_group);
+  });
+  for (Index j = 0; j < t.stages(); ++j)
+    if (t.b(j) != 0) v += length_ * t.b(j) * dk.middleRows(j * n, n);
+}
+
+void StepDerivative::carry(MatrixXd& v) const {
+  change(v, nullptr, false);
+}
+
+RungeKutta::RungeKutta(std::unique_ptr<Stages> stages, Tableau tableau, bool by_length)
+    : stages_(std::move(stages)),
+      tableau_(std::move(tableau)),
+      together_(tableau_.sequential() ? 1 : tableau_.stages()),
+      by_length_(by_length),
+      shared_(core::size_of(stages_->comm()) > 1) {}
+
+double RungeKutta::largest(const MatrixXd& v) const {
+  double size = v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0;
+  if (!v.allFinite()) size = INFINITY;
+  if (shared_) MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, stages_->comm());
+  return size;
+}
+
+void RungeKutta::place() {
+  x_ = base_;
+  for (Index j = 0; j < x_.cols(); ++j)
+    for (Index l = 0; l < x_.cols(); ++l)
+      if (group_.own(j, l) != 0) x_.col(j) += group_.own(j, l) * k_.col(l);
+}
+
+void RungeKutta::find(Stage& stage) {
+  const bool implicit = !group_.is_explicit();
+  const double size = largest(base_), own = group_.own.lpNorm<Eigen::Infinity>();
+  double correction = 0, last = 0;
   for (int it = 0;; ++it) {
-    const VectorXd value = base + length * own * k;
-    point_.residual(angle, value, k, f);
-    point_.linearise(angle, value, k, jx, jxdot, nullptr);
-    if (own != 0) jxdot += length * own * jx;
-    const VectorXd d = -core::DenseLu<double>(jxdot).solve(f);
-    k += d;
+    place();
+    stage.residual(group_, x_, k_, f_);
+    if (it == 0 || !stages_->by_chords() || (it > 1 && correction > slow_chord * last)) stage.factorise(group_, x_, k_);
+    stage.solve(f_);
+    k_ -= f_;
+    last = correction;
+    correction = largest(f_);
     // F is linear in dx/dt, so that an explicit stage is solved at once.
-    if (own == 0 || arrived(d, length, x)) break;
-    if (it == max_iterations || !d.allFinite()) fail();
-  }
-  if (!k.allFinite()) fail();
-  slopes.col(j) = k;
-}
-
-void RungeKutta::solve_coupled(double angle, double d_angle, double length, const VectorXd& x, MatrixXd& slopes) {
-  const Index n = x.size(), s = tableau_.stages();
-  MatrixXd matrix(s * n, s * n), jx, jxdot;
-  VectorXd f(s * n);
-  slopes.setZero();
-  for (int it = 0;; ++it) {
-    for (Index j = 0; j < s; ++j) {
-      const VectorXd value = x + length * (slopes * tableau_.a.row(j).transpose()), k = slopes.col(j);
-      const double at = angle + tableau_.c(j) * d_angle;
-      point_.residual(at, value, k, f.segment(j * n, n));
-      point_.linearise(at, value, k, jx, jxdot, nullptr);
-      for (Index l = 0; l < s; ++l) matrix.block(j * n, l * n, n, n) = length * tableau_.a(j, l) * jx;
-      matrix.block(j * n, j * n, n, n) += jxdot;
-    }
-    const VectorXd d = -core::DenseLu<double>(matrix).solve(f);
-    slopes += Eigen::Map<const MatrixXd>(d.data(), n, s);
-    if (arrived(d, length, x)) break;
-    if (it == max_iterations || !d.allFinite()) fail();
+    const bool arrived = !implicit || own * correction <= stages_->tolerance() * (1 + size);
+    if (std::isfinite(correction) && arrived) return;
+    if (it < most_corrections && std::isfinite(correction)) continue;
+    const auto fail = [] { throw core::DomainError("a stage of the Runge-Kutta step was not solved"); };
+    if (shared_) core::agree(stages_->comm(), fail);
+    fail();
   }
 }
 
-// dF/dx dX_j + dF/dxdot dK_j + dF/dp = 0 with dX_j = dx_0 + sum_l a(j,l) (H dK_l + dH K_l), for all columns at once.
-MatrixXd RungeKutta::tangents_of(double angle, double d_angle, double length, const VectorXd& x,
-                                 const MatrixXd& slopes) {
-  const Index n = x.size(), s = tableau_.stages();
-  const bool sequential = tableau_.sequential();
-  MatrixXd matrix, rhs(s * n, n + 2), jx, jxdot;
-  if (!sequential) matrix.resize(s * n, s * n);
-  VectorXd d_parameter;
-  for (Index j = 0; j < s; ++j) {
-    const VectorXd lift = slopes * tableau_.a.row(j).transpose(), value = x + length * lift;
-    point_.linearise(angle + tableau_.c(j) * d_angle, value, slopes.col(j), jx, jxdot, &d_parameter);
-    auto own = rhs.middleRows(j * n, n);
-    own.leftCols(n) = -jx;
-    own.col(n).noalias() = -(jx * lift);
-    own.col(n + 1) = -d_parameter;
-    if (sequential) {
-      MatrixXd known = MatrixXd::Zero(n, n + 2);
-      for (Index l = 0; l < j; ++l)
-        if (tableau_.a(j, l) != 0) known += length * tableau_.a(j, l) * rhs.middleRows(l * n, n);
-      own.noalias() -= jx * known;
-      if (tableau_.a(j, j) != 0) jxdot += length * tableau_.a(j, j) * jx;
-      own = core::DenseLu<double>(jxdot).solve(own);
-    } else {
-      for (Index l = 0; l < s; ++l) matrix.block(j * n, l * n, n, n) = length * tableau_.a(j, l) * jx;
-      matrix.block(j * n, j * n, n, n) += jxdot;
+void RungeKutta::step(double angle, double d_angle, double length, VectorXd& x, StepDerivative* derivative) {
+  const Index n = x.size(), s = tableau_.stages(), m = together_;
+  StepDerivative& to = derivative ? *derivative : unused_;
+  to.scheme_ = this;
+  to.length_ = length;
+  while (to.stages_.size() < at(s / m)) to.stages_.push_back(stages_->make());
+  stages_->begin_step();
+  slopes_.setZero(n, s);
+  for (Index first = 0; first < s; first += m) {
+    Stage& stage = *to.stages_[at(first / m)];
+    group_.angle = angle + d_angle * tableau_.c.segment(first, m).array();
+    group_.own = length * tableau_.a.block(first, first, m, m);
+    base_ = x.replicate(1, m);
+    for (Index l = 0; l < first; ++l)
+      if (tableau_.a(first, l) != 0) base_ += length * tableau_.a(first, l) * slopes_.col(l);
+    k_ = slopes_.middleCols(first > 0 ? first - 1 : 0, m);
+    find(stage);
+    slopes_.middleCols(first, m) = k_;
+    if (!derivative) continue;
+    place();
+    stage.keep(group_, x_, k_);
+  }
+  if (derivative) {
+    MatrixXd one = MatrixXd::Zero(n, 1);
+    to.change(one, nullptr, true);
+    to.d_parameter_ = one;
+    if (by_length_) {
+      // d x_j/dH = sum_l a(j,l) (k_l + H dk_l)
+      const MatrixXd lifts = slopes_ * tableau_.a.transpose();
+      one.setZero();
+      to.change(one, &lifts, false);
+      to.d_length_ = one + slopes_ * tableau_.b;
     }
   }
-  if (!sequential) rhs = core::DenseLu<double>(matrix).solve(rhs);
-  MatrixXd out = MatrixXd::Identity(n, n + 2);
-  for (Index j = 0; j < s; ++j) out += length * tableau_.b(j) * rhs.middleRows(j * n, n);
-  out.col(n) += slopes * tableau_.b;
-  return out;
+  for (Index j = 0; j < s; ++j)
+    if (tableau_.b(j) != 0) x += length * tableau_.b(j) * slopes_.col(j);
 }
 
-void RungeKutta::step(double angle, double d_angle, double length, VectorXd& x, MatrixXd* tangents) {
-  MatrixXd slopes = MatrixXd::Zero(x.size(), tableau_.stages());
-  if (tableau_.sequential())
-    for (Index j = 0; j < tableau_.stages(); ++j) solve_stage(j, angle + tableau_.c(j) * d_angle, length, x, slopes);
-  else
-    solve_coupled(angle, d_angle, length, x, slopes);
-  if (tangents) *tangents = tangents_of(angle, d_angle, length, x, slopes);
-  x += length * (slopes * tableau_.b);
+VectorXd RungeKutta::rate(double angle, const VectorXd& x) {
+  if (unused_.stages_.empty()) unused_.stages_.push_back(stages_->make());
+  group_ = {VectorXd::Constant(1, angle), MatrixXd::Zero(1, 1)};
+  base_ = x;
+  k_.setZero(x.size(), 1);
+  // With the rates of damped liners known, the pressures that they turn on and off.
+  for (int pass = 0; pass < 2; ++pass) find(*unused_.stages_.front());
+  return k_;
 }
 
 }  // namespace whirl::solve

@@ -1,7 +1,6 @@
 #include "whirl/solve/shooting/shooting_problem.hpp"
 
 #include "solve/newton/local_part.hpp"
-#include "solve/shooting/sparse_step.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
@@ -48,49 +47,27 @@ CycleOptions of_degree_one(CycleOptions options) {
 ShootingProblem::ShootingProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, Tableau tableau,
                                  int steps, std::vector<double> mesh, bool constant_rates)
     : CycleProblem(time, local, of_degree_one(options), std::move(mesh)),
-      stepper_(point(), std::move(tableau)),
+      stepper_(choose_stages(local, tableau, constant_rates, &point()), tableau),
+      known_at_(local.parameter()),
       steps_(steps) {
   core::require(steps > 0, "shooting needs at least one step per interval");
-  if (!constant_rates || !stepper_.tableau().sequential()) return;
-  structured_ = std::make_unique<SparseRungeKutta>(local, stepper_.tableau(), true, true);
-  structured_at_ = local.parameter();
-  state_ = core::make_vector(local.comm(), local.local_size(), PETSC_DETERMINE);
-  if (!structured_->product_is_free()) structured_.reset();
-}
-
-ShootingProblem::~ShootingProblem() = default;
-
-// One step; `tangents` [d/dx_start | d/dH | d/dp] are carried on.
-void ShootingProblem::step(double begin, double end, double length, VectorXd& x, MatrixXd* tangents) {
-  const Index n = x.size();
-  if (!structured_) {
-    MatrixXd one;
-    stepper_.step(begin, end - begin, length, x, tangents ? &one : nullptr);
-    if (!tangents) return;
-    *tangents = (one.leftCols(n) * *tangents).eval();
-    tangents->rightCols(2) += one.rightCols(2);
-    return;
-  }
-  if (system().parameter() != structured_at_) structured_->refresh();
-  structured_at_ = system().parameter();
-  StepProduct product;
-  put(x, state_.get());
-  structured_->step(begin, end - begin, length, state_.get(), tangents ? &product : nullptr);
-  x = get(state_.get());
-  if (!tangents) return;
-  product.apply(*tangents);
-  tangents->col(n) += product.d_length();
-  tangents->col(n + 1) += product.d_parameter();
 }
 
 // Tangents [d/dx_start | d/dH | d/dp] over all steps of the interval, H the length of one of them.
 void ShootingProblem::march(Index i, double period, VectorXd& x, MatrixXd* tangents, MatrixXd* states) {
   const double length = interval_length(i) * period / steps_;
   if (tangents) *tangents = MatrixXd::Identity(x.size(), x.size() + 2);
+  if (system().parameter() != known_at_) stepper_.stages().refresh();
+  known_at_ = system().parameter();
   for (int k = 0; k < steps_; ++k) {
-    step(angle_at(i, static_cast<double>(k) / steps_), angle_at(i, static_cast<double>(k + 1) / steps_), length, x,
-         tangents);
+    const double begin = angle_at(i, static_cast<double>(k) / steps_),
+                 end = angle_at(i, static_cast<double>(k + 1) / steps_);
+    stepper_.step(begin, end - begin, length, x, tangents ? &derivative_ : nullptr);
     if (states) states->col(k) = x;
+    if (!tangents) continue;
+    derivative_.carry(*tangents);
+    tangents->col(x.size()) += derivative_.d_length();
+    tangents->col(x.size() + 1) += derivative_.d_parameter();
   }
 }
 

@@ -39,7 +39,7 @@ std::unique_ptr<StructuredRate> StructuredRate::make(problem::System& system) {
   // Dense blocks may make products dearer than those of a sparse matrix, in which a state of a film has five entries.
   problem::BlockStructure& s = *system.structure();
   const Index entries = s.l1().nonZeros() + s.l0().nonZeros() + 5 * (system.size() - s.size());
-  if (core::cost::dense_product(s.size()) > core::cost::sparse_product(entries)) return nullptr;
+  if (!core::cost::dense_is_cheaper(core::cost::Work::product, s.size(), entries)) return nullptr;
   std::unique_ptr<StructuredRate> out(new StructuredRate(system));
   if (!out->find_places()) return nullptr;
   out->refresh();
@@ -130,13 +130,15 @@ void StructuredRate::follow_rates() {
   }
 }
 
-void StructuredRate::evaluate(double angle, const VectorXd& z, VectorXd& rate, RateMatrix& a, VectorXd& d_parameter) {
+const VectorXd& StructuredRate::evaluate(double angle, const Eigen::Ref<const VectorXd>& z, RateMatrix& a,
+                                         VectorXd& d_parameter) {
   const VectorXd &states = point_.state_scale(), &rows = point_.residual_scale();
-  rate.setZero(size());
-  point_.residual(angle, z, rate, f_, at_);
+  z_ = z;
+  rate_.setZero(size());
+  point_.residual(angle, z_, rate_, f_, at_);
   follow_rates();
-  rate.head(n_).noalias() = -mass_.lazyProduct(f_.head(n_));
-  rate.tail(size() - n_) = inverse_.cwiseProduct(f_.tail(size() - n_)).cwiseProduct(rows.tail(size() - n_));
+  rate_.head(n_).noalias() = -mass_.lazyProduct(f_.head(n_));
+  rate_.tail(size() - n_) = inverse_.cwiseProduct(f_.tail(size() - n_)).cwiseProduct(rows.tail(size() - n_));
 
   if (a.size() != values_) a.setZero(values_);
   inputs_.noalias() = at_.films.d_inputs.lazyProduct(point_.blocks().c);
@@ -166,11 +168,12 @@ void StructuredRate::evaluate(double angle, const VectorXd& z, VectorXd& rate, R
     for (std::size_t e = 0; e < film.entries.size(); ++e) diagonals[film.entries[e]] += *factor++ * t.d_states[e];
   }
   // At the rates found: masses may depend on the parameter.
-  at_.rate = rate.cwiseProduct(states);
+  at_.rate = rate_.cwiseProduct(states);
   d_parameter.resize(size());
   point_.parameter_derivative(angle, at_, d_parameter);
   d_parameter.head(n_) = -mass_.lazyProduct(d_parameter.head(n_)).eval();
   d_parameter.tail(size() - n_).array() *= inverse_.array() * rows.tail(size() - n_).array();
+  return rate_;
 }
 
 void StructuredRate::times(const RateMatrix& a, const double* v, double* y) const {

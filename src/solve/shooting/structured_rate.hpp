@@ -39,10 +39,10 @@ public:
   [[nodiscard]] Eigen::Index size() const { return point_.size(); }
   /// To be called after each change of the system's parameter.
   void refresh();
-  /// rate = dz/dt [n + k] at (angle, z), and its derivatives by z and (per SI unit) by the parameter. Throws
-  /// core::DomainError.
-  void evaluate(double angle, const Eigen::VectorXd& z, Eigen::VectorXd& rate, RateMatrix& a,
-                Eigen::VectorXd& d_parameter);
+  /// dz/dt [n + k] at (angle, z) until the next call, and its derivatives by z and (per SI unit) by the parameter.
+  /// Throws core::DomainError.
+  const Eigen::VectorXd& evaluate(double angle, const Eigen::Ref<const Eigen::VectorXd>& z, RateMatrix& a,
+                                  Eigen::VectorXd& d_parameter);
   /// y = A v [n + k] of an A at the parameter of the last refresh().
   void times(const RateMatrix& a, const double* v, double* y) const;
   [[nodiscard]] Eigen::Index coordinates() const { return n_; }
@@ -52,8 +52,6 @@ public:
   [[nodiscard]] const Eigen::MatrixXd& inputs() const { return point_.blocks().c; }
   /// True if films have neighbours so few that implicit stages are solved in bands.
   [[nodiscard]] bool narrow() const;
-  /// Work space [n + k, columns] for whoever multiplies.
-  [[nodiscard]] Eigen::MatrixXd& work() const { return work_; }
 
 private:
   explicit StructuredRate(problem::System& system);
@@ -67,12 +65,12 @@ private:
   Eigen::Index values_ = 0, reach_ = 0;
   Eigen::MatrixXd mass_, lead_, linear_;  // L1^-1, Q and -L1^-1 L0
   problem::PointState at_;
-  Eigen::VectorXd f_, inverse_;   // inverse_: -1/R in scaled states per SI of the residual [k]
+  Eigen::VectorXd z_, rate_, f_;
+  Eigen::VectorXd inverse_;       // -1/R in scaled states per SI of the residual [k]
   Eigen::MatrixXd inputs_;        // df/dw C
   std::vector<double> rates_;     // R of all films at the last point
   std::vector<double> factors_;   // of all entries of dg/ds: -1/R in scaled states
   mutable Eigen::VectorXd ring_;  // states of a film with their neighbours around the ring
-  mutable Eigen::MatrixXd work_;
 };
 
 }  // namespace whirl::solve

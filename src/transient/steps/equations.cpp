@@ -2,6 +2,7 @@
 
 #include "whirl/core/cost.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/local_part.hpp"
 #include "whirl/core/shell.hpp"
 
 namespace whirl::transient {
@@ -18,17 +19,15 @@ bool is_thin(problem::System& system, Algebra algebra) {
   return s && system.size() - s->size() <= most_own_states;
 }
 
-bool dense_is_cheaper(problem::System& system) {
-  if (core::size_of(system.comm()) > 1) return false;
+// The Jacobian of a system whose dense factors are cheaper than MUMPS's; null of others.
+core::Matrix small_matrix(problem::System& system) {
+  if (core::size_of(system.comm()) > 1) return {};
   MatInfo info;
-  const core::Matrix jacobian = system.make_jacobian();
+  core::Matrix jacobian = system.make_jacobian();
   check(MatGetInfo(jacobian.get(), MAT_LOCAL, &info));
-  return core::cost::dense_step(system.size()) < core::cost::sparse_step(static_cast<std::int64_t>(info.nz_allocated));
-}
-
-void to_eigen(Vec v, Eigen::VectorXd& out) {
-  const core::ReadArray a(v);
-  out = Eigen::Map<const Eigen::VectorXd>(a.data(), a.size());
+  const auto entries = static_cast<std::int64_t>(info.nz_allocated);
+  return core::cost::dense_is_cheaper(core::cost::Work::step, system.size(), entries) ? std::move(jacobian)
+                                                                                      : core::Matrix();
 }
 
 }  // namespace
@@ -47,10 +46,12 @@ Equations::Equations(problem::System& system, const problem::Drive& drive, Algeb
   check(VecReciprocal(inverse_.get()));
   x_ = core::duplicate(state_scale_.get());
   xdot_ = core::duplicate(state_scale_.get());
-  if (thin_ || dense_is_cheaper(system)) {
-    point_ = std::make_unique<problem::ScaledPoint>(system, system.structure(), thin_);
+  if (thin_) {
+    point_ = std::make_unique<problem::ScaledPoint>(system, system.structure(), true);
     point_->refresh();
     f_.resize(system.size());
+  } else {
+    sparse_ = small_matrix(system);
   }
 }
 
@@ -65,15 +66,14 @@ core::Matrix Equations::make_matrix() {
     auto a = std::make_shared<ThinOperator>();
     core::Matrix m = core::make_shell(PETSC_COMM_SELF, system_.size(), gate_, [this, a](Vec x, Vec y) {
       Eigen::VectorXd v, out(system_.size());
-      to_eigen(x, v);
+      core::get(x, v);
       point_->times(a->at, a->alpha * v, a->sigma * v, out);
-      const core::WriteArray to(y);
-      Eigen::Map<Eigen::VectorXd>(to.data(), to.size()) = out;
+      core::put(out, y);
     });
     operators_.emplace_back(m.get(), std::move(a));
     return m;
   }
-  if (!dense()) return system_.make_jacobian();
+  if (!sparse_) return system_.make_jacobian();
   core::Matrix m;
   check(MatCreateSeqDense(PETSC_COMM_SELF, system_.size(), system_.size(), nullptr, m.put()));
   check(MatAssemblyBegin(m.get(), MAT_FINAL_ASSEMBLY));
@@ -92,15 +92,14 @@ void Equations::configure(KSP ksp) {
                     [this, ksp, inverse, y = Eigen::VectorXd(), x = Eigen::VectorXd()](Vec in, Vec out) mutable {
                       Mat a = nullptr;
                       check(KSPGetOperators(ksp, &a, nullptr));
-                      to_eigen(in, y);
+                      core::get(in, y);
                       inverse->solve(operator_of(a), y, x);
-                      const core::WriteArray to(out);
-                      Eigen::Map<Eigen::VectorXd>(to.data(), to.size()) = x;
+                      core::put(x, out);
                     });
     return;
   }
   check(PCSetType(pc, PCLU));
-  if (!dense()) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  if (!sparse_) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
 }
 
 void Equations::forget() {
@@ -129,8 +128,8 @@ void Equations::turn(double t) {
 
 // With tangents where they cost little: those of films without own states come with their forces.
 void Equations::thin_residual(double t, Vec u, Vec udot) {
-  to_eigen(u, u_);
-  to_eigen(udot, udot_);
+  core::get(u, u_);
+  core::get(udot, udot_);
   time_ = t;
   tangents_ = false;
   const bool cheap = point_->own_states() == 0;
@@ -142,9 +141,7 @@ void Equations::residual(double t, Vec u, Vec udot, Vec f) {
   if (thin_) {
     f_.resize(system_.size());
     thin_residual(t, u, udot);
-    const core::WriteArray out(f);
-    Eigen::Map<Eigen::VectorXd>(out.data(), out.size()) = f_;
-    return;
+    return core::put(f_, f);
   }
   free_residual(t, u, udot, f);
   if (forces_) forces_->subtract(t, inverse_.get(), f);
@@ -154,14 +151,6 @@ void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
   ++residuals_;
   turn(t);
   const double angle = drive_.angle_at(t);
-  if (point_) {
-    to_eigen(u, u_);
-    to_eigen(udot, udot_);
-    const core::WriteArray out(f);
-    point_->residual(angle, u_, udot_, f_);
-    Eigen::Map<Eigen::VectorXd>(out.data(), out.size()) = f_;
-    return;
-  }
   unscale(u, x_.get());
   unscale(udot, xdot_.get());
   system_.residual(angle, x_.get(), xdot_.get(), f);
@@ -208,22 +197,12 @@ void Equations::jacobian(double t, Vec u, Vec udot, double alpha, double sigma, 
     check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
     return;
   }
-  if (point_) {
-    to_eigen(u, u_);
-    to_eigen(udot, udot_);
-    point_->linearise(angle, u_, udot_, jx_, jxdot_, nullptr);
-    PetscScalar* out = nullptr;
-    check(MatDenseGetArrayWrite(j, &out));
-    Eigen::Map<Eigen::MatrixXd>(out, jx_.rows(), jx_.cols()) = alpha * jx_ + sigma * jxdot_;
-    check(MatDenseRestoreArrayWrite(j, &out));
-    check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
-    return;
-  }
   unscale(u, x_.get());
   unscale(udot, xdot_.get());
-  system_.jacobian(angle, x_.get(), xdot_.get(), alpha, sigma, j);
-  check(MatDiagonalScale(j, inverse_.get(), state_scale_.get()));
+  Mat to = sparse_ ? sparse_.get() : j;
+  system_.jacobian(angle, x_.get(), xdot_.get(), alpha, sigma, to);
+  check(MatDiagonalScale(to, inverse_.get(), state_scale_.get()));
+  if (to != j) check(MatConvert(to, MATSEQDENSE, MAT_REUSE_MATRIX, &j));
 }
 
 core::LinearSolver Equations::make_solver(const std::string& prefix) {

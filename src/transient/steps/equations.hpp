@@ -24,7 +24,6 @@ public:
   Equations& operator=(const Equations&) = delete;
 
   [[nodiscard]] problem::System& system() const { return system_; }
-  [[nodiscard]] bool dense() const { return point_ && !thin(); }
   /// Matrices are products only, of which configure() knows the inverse.
   [[nodiscard]] bool thin() const { return thin_; }
   [[nodiscard]] core::Vector make_state() const { return core::duplicate(state_scale_.get()); }
@@ -77,9 +76,9 @@ private:
   bool thin_ = false;
   double turned_ = 0;  // the speed that `point_` is at
   core::Vector state_scale_, residual_scale_, inverse_, x_, xdot_;
-  std::unique_ptr<problem::ScaledPoint> point_;
+  core::Matrix sparse_;                          // of small systems, whose matrices are dense copies of it
+  std::unique_ptr<problem::ScaledPoint> point_;  // of thin ones
   Eigen::VectorXd u_, udot_, f_;
-  Eigen::MatrixXd jx_, jxdot_;
   // Of thin ones: the point of the last residual and its tangents, and what matrices stand for.
   double time_ = 0;
   problem::PointState at_;

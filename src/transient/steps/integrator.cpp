@@ -124,9 +124,8 @@ struct Integrator::Parts {
       throw core::DomainError(fmt::format("steps shorter than {:.0e} revolutions: {}", shortest_step, why));
     }
     if (tangents) {
-      for (int i = 0; i < static_cast<int>(tableau.stages()); ++i) carrier->keep(i, stepper->stage(i));
       // The steps suit the deviations too: at an equilibrium the state alone would allow any.
-      const double error = carrier->propagate(reached + offset, taken.length, before.get(), *tangents) /
+      const double error = carrier->propagate(reached + offset, taken.length, before.get(), *stepper, *tangents) /
                            (deviation_tolerance * options.tolerance);
       const double allowed = allowed_step(taken.length, error, tableau.order);
       if (error > 1) {

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/local_part.hpp"
 
 namespace whirl::transient {
 
 using core::check;
-using Eigen::Map;
 using Eigen::VectorXd;
 
 namespace {
@@ -122,12 +122,8 @@ void NewmarkFixedPointSteps::forget() {
 }
 
 bool NewmarkFixedPointSteps::solve(double time, double length, Vec u, Vec rate) {
-  const auto read = [](Vec v, VectorXd& out) {
-    const core::ReadArray a(v);
-    out = Map<const VectorXd>(a.data(), a.size());
-  };
-  read(u, start_);
-  read(rate, start_rate_);
+  core::get(u, start_);
+  core::get(rate, start_rate_);
   const double to = time + length, root_n = std::sqrt(static_cast<double>(start_.size()));
   value_ = start_ + length * start_rate_;
   double last = 0;
@@ -153,12 +149,8 @@ bool NewmarkFixedPointSteps::solve(double time, double length, Vec u, Vec rate) 
     last = moved;
     if (moved > tolerance()) continue;
     slope_ = sigma(length) * (value_ - start_) - kept() * start_rate_;
-    const auto write = [](const VectorXd& v, Vec out) {
-      const core::WriteArray a(out);
-      Map<VectorXd>(a.data(), a.size()) = v;
-    };
-    write(value_, end());
-    write(slope_, end_rate());
+    core::put(value_, end());
+    core::put(slope_, end_rate());
     return true;
   }
   return false;

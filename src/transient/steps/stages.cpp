@@ -1,13 +1,20 @@
 #include "transient/steps/stages.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/local_part.hpp"
+#include "whirl/solve/shooting/runge_kutta.hpp"
 
 namespace whirl::transient {
 
 using core::check;
+using core::get;
+using core::put;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 Eigen::VectorXd embedded_weights(const solve::Tableau& t) {
   core::require(t.order == 4 && t.stages() == 5, "the estimate is that of the scheme of order 4");
@@ -41,71 +48,51 @@ Eigen::MatrixXd continuous_weights(const solve::Tableau& t) {
 
 StageTangents::StageTangents(Equations& equations, const solve::Tableau& tableau)
     : equations_(equations), tableau_(tableau), estimate_(tableau.b - embedded_weights(tableau)) {
-  z_ = equations.make_state();
-  rhs_ = equations.make_state();
-  for (Eigen::Index i = 0; i < tableau.stages(); ++i) {
-    values_.push_back(equations.make_state());
-    slopes_.push_back(equations.make_state());
-  }
+  for (core::Vector* v : {&z_, &rhs_, &change_}) *v = equations.make_state();
   matrix_ = equations.make_matrix();
   at_rest_ = equations.make_matrix();
-  check(KSPCreate(equations.system().comm(), solver_.put()));
-  check(KSPSetOptionsPrefix(solver_.get(), "motion_tangents_"));
-  equations.configure(solver_.get());
-  check(KSPSetFromOptions(solver_.get()));
+  solver_ = equations.make_solver("motion_tangents_");
 }
 
-void StageTangents::keep(PetscInt stage, Vec value) {
-  check(VecCopy(value, values_[static_cast<std::size_t>(stage)].get()));
-}
-
-double StageTangents::propagate(double time, double length, Vec u, const Tangents& tangents) {
-  const auto directions = static_cast<std::size_t>(tangents.count());
-  const std::size_t stages = values_.size();
-  while (deviations_.size() < directions) {
-    deviations_.emplace_back();
-    for (std::size_t i = 0; i < stages; ++i) deviations_.back().push_back(equations_.make_state());
-    ends_.push_back(equations_.make_state());
-  }
-  const auto a = [&](std::size_t i, std::size_t j) {
-    return length * tableau_.a(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-  };
-  for (std::size_t i = 0; i < stages; ++i) {
-    const double own = a(i, i), at = time + length * tableau_.c(static_cast<Eigen::Index>(i));
-    Vec slope = slopes_[i].get();
-    check(VecCopy(u, z_.get()));
-    for (std::size_t j = 0; j < i; ++j) check(VecAXPY(z_.get(), a(i, j), slopes_[j].get()));
-    check(VecWAXPY(slope, -1, z_.get(), values_[i].get()));
-    check(VecScale(slope, 1 / own));
-    equations_.jacobian(at, values_[i].get(), slope, own, 1, matrix_.get());
-    equations_.jacobian(at, values_[i].get(), slope, 1, 0, at_rest_.get());
+double StageTangents::propagate(double time, double length, Vec u, Stepper& stepper, const Tangents& tangents) {
+  const MatrixXd inverse = core::DenseLu<double>(tableau_.a).inverse();
+  const Index s = tableau_.stages();
+  const VectorXd start = get(u);
+  MatrixXd values(start.size(), s), before(start.size(), tangents.count());
+  for (Index i = 0; i < s; ++i) values.col(i) = get(stepper.stage(static_cast<int>(i)));
+  for (int k = 0; k < tangents.count(); ++k) before.col(k) = get(tangents.column(k));
+  const MatrixXd slopes = (values.colwise() - start) * inverse.transpose() / length;
+  solve::carry_stages(tableau_, 1, length, before, w_, slopes_, [&](Index i, const MatrixXd& w, auto dk) {
+    const double own = length * tableau_.a(i, i), at = time + length * tableau_.c(i);
+    put(values.col(i), z_.get());
+    put(slopes.col(i), rhs_.get());
+    equations_.jacobian(at, z_.get(), rhs_.get(), own, 1, matrix_.get());
+    equations_.jacobian(at, z_.get(), rhs_.get(), 1, 0, at_rest_.get());
     check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));
-    for (std::size_t k = 0; k < directions; ++k) {
-      auto& dk = deviations_[k];
-      check(VecCopy(tangents.column(static_cast<int>(k)), z_.get()));
-      for (std::size_t j = 0; j < i; ++j) check(VecAXPY(z_.get(), a(i, j), dk[j].get()));
+    for (Index k = 0; k < w.cols(); ++k) {
+      put(-w.col(k), z_.get());
       check(MatMult(at_rest_.get(), z_.get(), rhs_.get()));
-      check(VecScale(rhs_.get(), -1));
-      check(KSPSolve(solver_.get(), rhs_.get(), dk[i].get()));
-      if (i + 1 == stages) check(VecWAXPY(ends_[k].get(), own, dk[i].get(), z_.get()));
+      check(KSPSolve(solver_.get(), rhs_.get(), change_.get()));
+      dk.col(k) = get(change_.get());
     }
+  });
+  ends_ = before;
+  MatrixXd error = MatrixXd::Zero(before.rows(), before.cols());
+  for (Index i = 0; i < s; ++i) {
+    const auto dk = slopes_.middleRows(i * before.rows(), before.rows());
+    ends_ += length * tableau_.b(i) * dk;
+    error += length * estimate_(i) * dk;
   }
-  double largest = 0;
-  for (std::size_t k = 0; k < directions; ++k) {
-    check(VecSet(rhs_.get(), 0));
-    for (std::size_t i = 0; i < stages; ++i)
-      check(VecAXPY(rhs_.get(), length * estimate_(static_cast<Eigen::Index>(i)), deviations_[k][i].get()));
-    double error = 0, before = 0;
-    check(VecNorm(rhs_.get(), NORM_2, &error));
-    check(VecNorm(tangents.column(static_cast<int>(k)), NORM_2, &before));
-    largest = std::max(largest, error / before);
-  }
-  return largest;
+  MatrixXd sums(2, before.cols());
+  sums.row(0) = error.colwise().squaredNorm();
+  sums.row(1) = before.colwise().squaredNorm();
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM,
+                equations_.system().comm());
+  return std::sqrt((sums.row(0).array() / sums.row(1).array()).maxCoeff());
 }
 
 void StageTangents::accept(Tangents& tangents) {
-  for (int k = 0; k < tangents.count(); ++k)
-    check(VecCopy(ends_[static_cast<std::size_t>(k)].get(), tangents.column(k)));
+  for (int k = 0; k < tangents.count(); ++k) put(ends_.col(k), tangents.column(k));
 }
 
 void StageTangents::make_consistent(double time, double length, Vec u, Tangents& tangents) {

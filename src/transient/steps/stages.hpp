@@ -1,9 +1,8 @@
 #pragma once
 // The derivative of one diagonally implicit Runge-Kutta step.
 
-#include <vector>
-
 #include "transient/steps/equations.hpp"
+#include "transient/steps/stepper.hpp"
 #include "whirl/solve/shooting/tableau.hpp"
 #include "whirl/transient/steps/tangents.hpp"
 
@@ -26,11 +25,9 @@ namespace whirl::transient {
 class StageTangents {
 public:
   StageTangents(Equations& equations, const solve::Tableau& tableau);
-  /// Remembers Y_i of the step that is being taken; one that is tried again overwrites it.
-  void keep(PetscInt stage, Vec value);
-  /// Carries all deviations over the step of `length` from `u` at `time`, for accept() to take over; returns the
-  /// largest estimated error of any of them, relative to its length.
-  double propagate(double time, double length, Vec u, const Tangents& tangents);
+  /// Carries all deviations over the last step of `stepper`, of `length` from `u` at `time`, for accept() to take over;
+  /// returns the largest estimated error of any of them, relative to its length.
+  double propagate(double time, double length, Vec u, Stepper& stepper, const Tangents& tangents);
   void accept(Tangents& tangents);
   /// Where dF/d(du/dt) is singular a deviation must obey the equations without rates: one step of Euler's implicit
   /// scheme from `u` at `time`, so short that nothing else moves.
@@ -39,11 +36,9 @@ public:
 private:
   Equations& equations_;
   const solve::Tableau& tableau_;
-  core::Vector z_, rhs_;
-  std::vector<core::Vector> values_, slopes_;
-  Eigen::VectorXd estimate_;                           // weights of the error of a step
-  std::vector<std::vector<core::Vector>> deviations_;  // dK_i of each direction
-  std::vector<core::Vector> ends_;                     // each direction after the step
+  Eigen::VectorXd estimate_;           // weights of the error of a step
+  Eigen::MatrixXd w_, slopes_, ends_;  // dZ_i, dK_i of all stages, and each direction after the step
+  core::Vector z_, rhs_, change_;
   core::Matrix matrix_, at_rest_;
   core::LinearSolver solver_;
 };

@@ -8,8 +8,6 @@
 
 namespace whirl::solve {
 
-class SparseRungeKutta;
-
 /// Equations x_(i+1) = phi_i(x_i; T, p), i over the intervals of the mesh with x_N = x_0, where phi_i are `steps` equal
 /// Runge-Kutta steps.
 ///
@@ -26,7 +24,6 @@ public:
   /// `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter.
   ShootingProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, Tableau tableau, int steps,
                   std::vector<double> mesh, bool constant_rates = false);
-  ~ShootingProblem() override;
 
   [[nodiscard]] const Tableau& tableau() const { return stepper_.tableau(); }
   /// Steps per interval.
@@ -55,11 +52,9 @@ private:
   /// Carries x over interval i; `states`, if not null, gets those after each step [n x steps].
   void march(Eigen::Index i, double period, Eigen::VectorXd& x, Eigen::MatrixXd* tangents,
              Eigen::MatrixXd* states = nullptr);
-  void step(double begin, double end, double length, Eigen::VectorXd& x, Eigen::MatrixXd* tangents);
   RungeKutta stepper_;
-  std::unique_ptr<SparseRungeKutta> structured_;  // instead, of systems that tell their structure
-  double structured_at_ = 0;                      // the parameter that it knows
-  core::Vector state_;
+  double known_at_;  // the parameter that its stages know
+  StepDerivative derivative_;
   int steps_;
 };
 
