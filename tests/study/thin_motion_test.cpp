@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numbers>
 
 #include "film/gas_cases.hpp"
 #include "support/finite_rotor.hpp"
 #include "support/train_system.hpp"
+#include "transient/steps/thin_steps.hpp"
 #include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
@@ -47,7 +49,40 @@ void same(const system::Train& train, const problem::Drive& drive, bool deviatio
   EXPECT_NEAR(thin.growth, whole.growth, 1e-4);
 }
 
+long allocations = 0;
+
 }  // namespace
+
+// The C library's own, counted. Eigen and operator new both come here.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+
+TEST(ThinMotion, StepsAllocateNothing) {
+  auto train = test::train({24, 8}, true);
+  test::add_gen_pair(train, 2.5);
+  constexpr double speed = 300, length = 2 * std::numbers::pi / speed / 200;
+  system::RotorSystem s(PETSC_COMM_SELF, train, speed);
+  s.set_forcing(false);
+  core::Vector x = system::static_guess(s);
+  ASSERT_TRUE(solve::find_equilibrium(s, x.get(), {.max_iterations = 60}).converged);
+  s.set_forcing(true);
+  transient::Equations equations(s, {speed, 0});
+  core::Vector u = equations.make_state();
+  equations.scale(x.get(), u.get());
+  const solve::Tableau tableau = solve::sdirk(4);
+  transient::ThinSteps steps(equations, tableau, 1e-3);
+  const auto take = [&](int first, int count) {
+    for (int k = first; k < first + count; ++k) EXPECT_EQ(steps.step(k * length, length, u.get()).length, length);
+  };
+  take(0, 3);  // factors, work space
+  const long before = allocations;
+  EXPECT_GT(before, 1000);
+  take(3, 20);
+  EXPECT_EQ(allocations, before);
+}
 
 TEST(ThinMotion, OfTheTrainRunningUp) {
   auto train = test::train({24, 8}, true);

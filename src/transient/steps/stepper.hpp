@@ -70,7 +70,7 @@ Taken take_step(double wanted, int order, Attempt&& attempt) {
   double h = wanted;
   constexpr double of_the_start = 10;  // tolerances, at most
   double error_before = 0;
-  std::string why = "Newton's method does not converge in steps however short";
+  std::string why;
   for (int rejected = 0; rejected <= max_rejections; ++rejected) {
     double next = h / 4;
     try {
@@ -81,6 +81,8 @@ Taken take_step(double wanted, int order, Attempt&& attempt) {
         error_before = *error;
         if (rejected > 0) next /= 2;
         why = "the error of a step exceeds its tolerance however short the step";
+      } else if (why.empty()) {
+        why = "Newton's method does not converge in steps however short";
       }
     } catch (const core::DomainError& e) {
       if (rejected == max_rejections) throw;

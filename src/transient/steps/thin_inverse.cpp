@@ -128,9 +128,9 @@ void ThinInverse::prepare(const ThinOperator& a, Factors& f) {
     by_input_.block(own.first_force, own.first_input, own.forces, own.inputs) -=
         f.films[i]->forces * f.films[i]->by_input;
   }
-  MatrixXd m = -f.tau * by_input_ * f.seen;
-  m.diagonal().array() += 1;
-  small_.compute(m);
+  small_matrix_.noalias() = -f.tau * by_input_ * f.seen;
+  small_matrix_.diagonal().array() += 1;
+  small_.compute(small_matrix_);
   prepared_ = &a;
   version_ = a.version;
 }
@@ -157,8 +157,8 @@ void ThinInverse::apply(const ThinOperator& a, const VectorXd& y, VectorXd& x) {
   else
     x.head(n).noalias() = f.inverse * rhs_;
   inputs_.noalias() = blocks.c * x.head(n);
-  by_force_.noalias() = by_input_ * inputs_;
-  by_force_ = small_.solve(by_force_);
+  forces_.noalias() = by_input_ * inputs_;
+  by_force_ = small_.solve(forces_);
   x.head(n).noalias() += f.tau * (f.lead * by_force_);
   if (!f.films.empty()) {
     inputs_.noalias() += f.tau * (f.seen * by_force_);

@@ -85,8 +85,9 @@ private:
   Factors* now_ = nullptr;  // what was prepared:
   const ThinOperator* prepared_ = nullptr;
   long version_ = -1;
-  Eigen::MatrixXd by_input_;     // df/dw with what the films' states add [r x w]
-  core::DenseLu<double> small_;  // I - tau by_input C (L1 + tau L0)^-1 B
+  Eigen::MatrixXd by_input_;                    // df/dw with what the films' states add [r x w]
+  Eigen::MatrixXd small_matrix_;                // I - tau by_input C (L1 + tau L0)^-1 B
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // not core::DenseLu, whose answers are new vectors
   long factorisations_ = 0, clock_ = 0;
   Eigen::VectorXd left_, more_;                       // work space of the refinement
   Eigen::VectorXd forces_, rhs_, inputs_, by_force_;  // and of apply()

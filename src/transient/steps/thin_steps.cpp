@@ -1,10 +1,10 @@
 #include "transient/steps/thin_steps.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "transient/steps/stages.hpp"
+#include "whirl/core/local_part.hpp"
 
 namespace whirl::transient {
 
@@ -53,24 +53,22 @@ double ThinSteps::norm(const VectorXd& v) const {
 
 // By the polynomial through the slopes that lie nearest in time, of this step and of the last one.
 void ThinSteps::predict(Index i, double length) {
-  struct Node {
-    double at;
-    const double* slope;
-  };
-  std::vector<Node> nodes;
+  nodes_.clear();
   const double wanted = tableau_.c(i);
-  for (Index j = 0; j < i; ++j) nodes.push_back({tableau_.c(j), slopes_.col(j).data()});
+  const auto add = [&](double at, const double* slope) {
+    const auto farther = [&](double d, const Node& n) { return d < std::abs(n.at - wanted); };
+    nodes_.insert(std::upper_bound(nodes_.begin(), nodes_.end(), std::abs(at - wanted), farther), {at, slope});
+  };
+  for (Index j = 0; j < i; ++j) add(tableau_.c(j), slopes_.col(j).data());
   for (Index j = 0; length_before_ > 0 && j < tableau_.stages(); ++j)
-    nodes.push_back({(tableau_.c(j) - 1) * length_before_ / length, before_.col(j).data()});
-  std::stable_sort(nodes.begin(), nodes.end(),
-                   [&](const Node& a, const Node& b) { return std::abs(a.at - wanted) < std::abs(b.at - wanted); });
-  if (nodes.size() > most_nodes) nodes.erase(nodes.begin() + most_nodes, nodes.end());
+    add((tableau_.c(j) - 1) * length_before_ / length, before_.col(j).data());
+  if (nodes_.size() > most_nodes) nodes_.erase(nodes_.begin() + most_nodes, nodes_.end());
   slope_.setZero();
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
     double weight = 1;
-    for (std::size_t l = 0; l < nodes.size(); ++l)
-      if (l != k) weight *= (wanted - nodes[l].at) / (nodes[k].at - nodes[l].at);
-    slope_ += weight * Eigen::Map<const VectorXd>(nodes[k].slope, slope_.size());
+    for (std::size_t l = 0; l < nodes_.size(); ++l)
+      if (l != k) weight *= (wanted - nodes_[l].at) / (nodes_[k].at - nodes_[l].at);
+    slope_ += weight * Eigen::Map<const VectorXd>(nodes_[k].slope, slope_.size());
   }
 }
 
@@ -150,8 +148,7 @@ std::optional<double> ThinSteps::attempt(double time, double length) {
       has_tangents_ = false;
       return std::nullopt;
     }
-    const core::WriteArray out(stages_[static_cast<std::size_t>(i)].get());
-    Eigen::Map<VectorXd>(out.data(), out.size()) = value_;
+    core::put(value_, stages_[static_cast<std::size_t>(i)].get());
   }
   end_ = value_;
   weights_ = (tolerance_ * (1 + start_.array().abs().max(end_.array().abs()))).inverse();
@@ -160,17 +157,13 @@ std::optional<double> ThinSteps::attempt(double time, double length) {
 }
 
 Taken ThinSteps::step(double time, double wanted, Vec u) {
-  {
-    const core::ReadArray a(u);
-    start_ = Eigen::Map<const VectorXd>(a.data(), a.size());
-  }
+  core::get(u, start_);
   const Taken taken = take_step(wanted, tableau_.order, [&](double h) { return attempt(time, h); });
   careful_ = false;
   time_ = time;
   length_ = length_before_ = taken.length;
   before_ = slopes_;
-  const core::WriteArray out(u);
-  Eigen::Map<VectorXd>(out.data(), out.size()) = end_;
+  core::put(end_, u);
   return taken;
 }
 
@@ -178,8 +171,7 @@ void ThinSteps::interpolate(double time, Vec u) {
   const double part = (time - time_) / length_;
   VectorXd weights = VectorXd::Zero(tableau_.stages());
   for (Index p = continuous_.cols() - 1; p >= 0; --p) weights = part * (weights + continuous_.col(p));
-  const core::WriteArray out(u);
-  Eigen::Map<VectorXd>(out.data(), out.size()) = start_ + length_ * (before_ * weights);
+  core::put(start_ + length_ * (before_ * weights), u);
 }
 
 }  // namespace whirl::transient

@@ -48,6 +48,12 @@ private:
   bool careful_ = false;  // until the next step that is taken
   double rate_ = 1;       // by which the last iteration converged
 
+  struct Node {
+    double at;  // in steps from the beginning of this one
+    const double* slope;
+  };
+  std::vector<Node> nodes_;  // work space of predict(), nearest first
+
   Eigen::VectorXd start_, weights_, known_, value_, slope_, f_, change_, end_;
   Eigen::MatrixXd slopes_, before_;  // K_i of this step and of the last one [n x stages]
   double time_ = 0, length_ = 0, length_before_ = 0;
