@@ -25,6 +25,15 @@ std::vector<double> StateRows::film_thickness(const Eigen::VectorXd& rows) {
   return x_ ? plant_.observe(vector(rows)).film_thickness : plant_.film_thickness(rows.data());
 }
 
+std::vector<double> whole_of(MPI_Comm comm, const Eigen::VectorXd& rows) {
+  const core::Vector x = core::make_vector(comm, static_cast<PetscInt>(rows.size()), PETSC_DETERMINE);
+  {
+    const core::WriteArray a(x.get());
+    std::copy_n(rows.data(), rows.size(), a.data());
+  }
+  return core::gather(x.get());
+}
+
 Eigen::VectorXd rows_of(Vec x) {
   const core::ReadArray a(x);
   return Eigen::Map<const Eigen::VectorXd>(a.data(), a.size());

@@ -24,6 +24,8 @@ private:
   core::Vector x_;
 };
 
+/// All entries, on every rank, of a vector of which each rank of `comm` has its rows.
+[[nodiscard]] std::vector<double> whole_of(MPI_Comm comm, const Eigen::VectorXd& rows);
 /// The entries of x on this rank.
 [[nodiscard]] Eigen::VectorXd rows_of(Vec x);
 /// The sum over the ranks of `comm`.

@@ -123,6 +123,13 @@ def forced(h):
     for axis, exact in zip("xy", PEAKS):
         h.close(f"travel at 0.6, {axis}", value(following, f"at.0.6.peak_to_peak.middle.{axis}"), exact, 1e-5)
     h.close("largest multiplier", value(following, "at.0.6.multiplier.modulus"), MODULUS, 1e-6)
+    # Newton-Picard knows products of the monodromy matrix only.
+    products = h.run(base, "products", ["bars=none", "studies=[{cycle_branch: {name: products, parameter: brusselator.amplitude,"
+                                        " range: {from: 0.25, to: 0.35}, step: {initial: 0.05, min: 1e-5, max: 0.05},"
+                                        " method: newton_picard, scheme: sdirk_4, intervals: 1, steps: 60, radius: 0.1}}]"])["products"]
+    by_products = products["bifurcations"][0]
+    h.close("Newton-Picard: its amplitude", by_products["value"], FOLLOWS, 1e-6)
+    h.close("Newton-Picard: coefficient of the normal form", by_products["criticality_coefficient"], point["criticality_coefficient"], 1e-3)
     for amplitude, kind in ((0.2, "quasi_periodic"), (0.6, "period-1")):
         motion = h.run(base, f"motion_{amplitude}", [f"brusselator.amplitude={amplitude}", "studies=[{motion: {name: motion, speed: 3 rad/s,"
                                                      " discard: 40, revolutions: 100, tolerance: 1e-6, start: {offset: [0.1, 0]}}}]"])["motion"]

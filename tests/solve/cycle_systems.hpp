@@ -90,7 +90,7 @@ inline solve::NewtonOptions sharp() {
 }
 
 /// Newton at fixed parameter; fails the test unless it converges.
-inline solve::NewtonResult solve_at(solve::CycleProblem& problem, Vec u, double parameter,
+inline solve::NewtonResult solve_at(solve::PeriodicProblem& problem, Vec u, double parameter,
                                     const solve::NewtonOptions& options = sharp()) {
   core::Vector row = core::duplicate(u);
   solve::parameter_row(problem, row.get());

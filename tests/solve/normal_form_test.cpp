@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "cycle_systems.hpp"
+#include "support/cycle_rows.hpp"
+#include "whirl/solve/bifurcation/condition.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
 
 using namespace whirl;
 using test::Column;
@@ -58,6 +61,34 @@ struct BentFlip {
   }
 };
 
+void expect_neimark_sacker(solve::PeriodicProblem& problem, const problem::System& s, double re) {
+  core::Vector u =
+      problem.scatter(test::rows_of(test::sampled(problem.scheme(), problem.mesh(), 1, 0,
+                                                  [](double a) {
+                                                    // x2' = -x2 + cos(2 t)
+                                                    const double lag =
+                                                        (std::cos(a) + speed * std::sin(a)) / (1 + speed * speed);
+                                                    return Eigen::VectorXd(Eigen::Vector3d(lag, 0, lag));
+                                                  }),
+                                    s));
+  (void)test::solve_at(problem, u.get(), 0);
+  core::Vector row = core::duplicate(u.get());
+  solve::parameter_row(problem, row.get());
+  problem.linearise(u.get(), row.get());
+  const double period = test::two_pi / speed;
+  // |q|^2 = 3 over two equal entries: z = 2 sqrt(3/2) Z
+  EXPECT_NEAR(solve::neimark_sacker_coefficient(problem, u.get(), std::polar(1.0, 1.3 * period)), 6 * re * period,
+              1e-4 * period);
+}
+
+void expect_flip(solve::PeriodicProblem& problem) {
+  const core::Vector u = problem.make_unknown();
+  core::Vector row = core::duplicate(u.get());
+  solve::parameter_row(problem, row.get());
+  problem.linearise(u.get(), row.get());
+  EXPECT_NEAR(solve::flip_coefficient(problem, u.get()), 2 * test::two_pi / speed, 1e-4);
+}
+
 }  // namespace
 
 using Joining = solve::CycleOptions::Joining;
@@ -79,19 +110,7 @@ TEST(NormalForm, NeimarkSacker) {
     o.degree = 4;
     o.joining = joining;
     solve::CycleProblem problem(MPI_COMM_WORLD, s, o, solve::uniform_mesh(20));
-    core::Vector u = problem.scatter(test::sampled(problem.scheme(), problem.mesh(), 1, 0, [](double a) {
-      // x2' = -x2 + cos(2 t)
-      const double lag = (std::cos(a) + speed * std::sin(a)) / (1 + speed * speed);
-      return Eigen::VectorXd(Eigen::Vector3d(lag, 0, lag));
-    }));
-    (void)test::solve_at(problem, u.get(), 0);
-    core::Vector row = core::duplicate(u.get());
-    solve::parameter_row(problem, row.get());
-    problem.linearise(u.get(), row.get());
-    const double period = test::two_pi / speed;
-    // |q|^2 = 3 over two equal entries: z = 2 sqrt(3/2) Z
-    EXPECT_NEAR(solve::neimark_sacker_coefficient(problem, u.get(), std::polar(1.0, 1.3 * period)), 6 * re * period,
-                1e-4 * period);
+    expect_neimark_sacker(problem, s, re);
   }
 }
 
@@ -102,10 +121,18 @@ TEST(NormalForm, Flip) {
     o.degree = 4;
     o.joining = joining;
     solve::CycleProblem problem(MPI_COMM_WORLD, s, o, solve::uniform_mesh(16));
-    const core::Vector u = problem.make_unknown();
-    core::Vector row = core::duplicate(u.get());
-    solve::parameter_row(problem, row.get());
-    problem.linearise(u.get(), row.get());
-    EXPECT_NEAR(solve::flip_coefficient(problem, u.get()), 2 * test::two_pi / speed, 1e-4);
+    expect_flip(problem);
   }
+}
+
+// M is known by its products only, and states are shared by the ranks.
+TEST(NormalForm, ByProducts) {
+  test::SmallSystem circle(MPI_COMM_WORLD, 3, 0, speed, BentNeimarkSacker{0.5}),
+      twice(MPI_COMM_WORLD, 2, 0, speed, BentFlip{});
+  solve::NewtonPicardProblem first(circle, {}, solve::sdirk(4), 12, solve::uniform_mesh(4));
+  EXPECT_FALSE(first.has_adjoint());
+  EXPECT_EQ(first.condition(solve::Event::neimark_sacker, {0, 1}), nullptr);
+  expect_neimark_sacker(first, circle, 0.5);
+  solve::NewtonPicardProblem second(twice, {}, solve::sdirk(4), 12, solve::uniform_mesh(4));
+  expect_flip(second);
 }

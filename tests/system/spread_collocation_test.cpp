@@ -111,6 +111,38 @@ solve::SpreadCollocationOptions options(int degree) {
   return o;
 }
 
+// The map over one period: motions of multipliers, and second derivatives along a motion.
+void expect_the_same_map(solve::CycleProblem& dense, const Answer& expected, solve::SpreadCollocation& spread,
+                         const Answer& found, const problem::System& s, double radius) {
+  const Eigen::Index n = s.size();
+  const auto rows = [&](const Eigen::VectorXd& v) { return Eigen::VectorXd(test::rows_of({{0, 1}, v, 1, 1}, s).x); };
+  const auto whole = [&](const Eigen::VectorXd& v) { return Eigen::VectorXd(test::whole_of({{0, 1}, v, 1, 1}, s).x); };
+  const Eigen::MatrixXd m = dense.monodromy();
+  for (const auto& mu : found.multipliers) {
+    if (std::abs(mu) < radius) continue;
+    const Eigen::VectorXcd q = spread.multiplier_vector(mu);
+    const Eigen::VectorXd re = whole(q.real()), im = whole(q.imag());
+    const double size = std::hypot(re.norm(), im.norm());
+    EXPECT_LE((m * re - mu.real() * re + mu.imag() * im).norm(), 1e-6 * size) << mu;
+    EXPECT_LE((m * im - mu.real() * im - mu.imag() * re).norm(), 1e-6 * size) << mu;
+  }
+  EXPECT_EQ(spread.multiplier_vector(3).size(), 0);
+  const auto second = [](solve::PeriodicProblem& problem, const solve::Cycle& cycle, const Eigen::VectorXd& start) {
+    const core::Vector u = problem.scatter(cycle);
+    const solve::Path path = problem.forward(start);
+    constexpr double step = 1e-4;
+    const Eigen::MatrixXd ahead = problem.tangents(u.get(), step, path, {&path})[0],
+                          behind = problem.tangents(u.get(), -step, path, {&path})[0];
+    Eigen::VectorXd end;
+    (void)problem.forced((ahead - behind) / (2 * step), end);
+    return end;
+  };
+  const Eigen::VectorXd start = Eigen::VectorXd::LinSpaced(n, 1, 7).array().sin();
+  const Eigen::VectorXd a = second(dense, expected.cycle, start),
+                        b = whole(second(spread, test::rows_of(found.cycle, s), rows(start)));
+  EXPECT_LE((a - b).norm(), 1e-6 * a.norm());
+}
+
 void compare(const Case& c, int degree, const std::vector<double>& mesh, const solve::SpreadCollocationOptions& o,
              bool in_time = false) {
   const Ranks ranks(in_time);
@@ -138,6 +170,7 @@ void compare(const Case& c, int degree, const std::vector<double>& mesh, const s
     EXPECT_LE(nearest, 1e-8) << mu;
   }
   EXPECT_GT(large, 0);
+  expect_the_same_map(dense, expected, spread, found, s, o.radius);
   EXPECT_EQ(large, std::count_if(found.multipliers.begin(), found.multipliers.end(),
                                  [&](auto z) { return std::abs(z) >= o.radius; }));
   EXPECT_NEAR(least_film(found.cycle, alone), least_film(expected.cycle, alone),

@@ -283,19 +283,6 @@ core::Vector any_tangent(ExtendedProblem& branch, Vec u) {
   return tangent;
 }
 
-std::unique_ptr<Condition> condition_of(CycleProblem& problem, Event event, std::complex<double> critical) {
-  switch (event) {
-    case Event::cyclic_fold:
-      return make_cyclic_fold(problem);
-    case Event::flip:
-      return make_flip(problem);
-    case Event::neimark_sacker:
-      return make_neimark_sacker(problem, critical);
-    default:
-      return nullptr;
-  }
-}
-
 std::unique_ptr<Condition> condition_of(problem::System& system, EquilibriumProblem& problem, Event event,
                                         std::complex<double> critical) {
   switch (event) {
@@ -310,12 +297,12 @@ std::unique_ptr<Condition> condition_of(problem::System& system, EquilibriumProb
 
 namespace {
 
-std::optional<Refined> refine_here(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
+std::optional<Refined> refine_here(PeriodicProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
                                    const NewtonOptions& options) try {
   core::Vector row = core::duplicate(u);
   weighted_row(problem, tangent, row.get());
   problem.linearise(u, row.get());
-  const auto condition = condition_of(problem, event.event, event.critical);
+  const auto condition = problem.condition(event.event, event.critical);
   if (!condition) return std::nullopt;
   VectorXd inner;
   auto found = locate(problem, *condition, u, tangent, options, &inner);
@@ -334,7 +321,7 @@ std::optional<Refined> refine_here(CycleProblem& problem, const LocatedEvent& ev
 
 }  // namespace
 
-std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
+std::optional<Refined> refine(PeriodicProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
                               const NewtonOptions& options) {
   if (!options.replay_log) return refine_here(problem, event, u, tangent, options);
   const std::vector<double> question{core::norm(u), static_cast<double>(event.event), event.critical.real(),

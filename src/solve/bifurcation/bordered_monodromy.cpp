@@ -24,21 +24,36 @@ void orthonormalise(MatrixXd& m) {
   }
 }
 
+using Product = std::function<VectorXd(const VectorXd&)>;
+
 // [A b; c^T 0] with A = sum a_e M^e, or its transpose, and what its preconditioner takes for A: a_0 I + to from^T.
+// Vectors have this rank's rows of a state and, on the last of the ranks that share it, behind them the k of the
+// border.
 struct Matrix {
-  CycleProblem& problem;
+  PeriodicProblem& problem;
   const std::vector<double>& a;
-  bool transposed = false;
+  Product times_m;  // or the transposed product
   const MatrixXd &b, &c, &from, &to;
 
   [[nodiscard]] Index states() const { return from.rows(); }
-  [[nodiscard]] VectorXd product_with_m(const VectorXd& x) const {
-    Composition& joined = problem.composition();
-    return VectorXd(transposed ? joined.times_transposed(x) : joined.times(x));
+  [[nodiscard]] bool last() const { return core::rank_of(problem.rows()) == core::size_of(problem.rows()) - 1; }
+  [[nodiscard]] Index local() const { return states() + (last() ? b.cols() : 0); }
+  [[nodiscard]] MatrixXd sum(MatrixXd values) const {
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, problem.rows());
+    return values;
+  }
+  [[nodiscard]] VectorXd border_of(const VectorXd& x) const {
+    VectorXd border = VectorXd::Zero(b.cols());
+    if (last()) border = x.tail(b.cols());
+    return sum(std::move(border));
+  }
+  [[nodiscard]] MatrixXd joined(const MatrixXd& states, const MatrixXd& border) const {
+    MatrixXd x(local(), states.cols());
+    x.topRows(states.rows()) = states;
+    if (last()) x.bottomRows(border.rows()) = border;
+    return x;
   }
 };
-
-using Product = std::function<VectorXd(const VectorXd&)>;
 
 // A square system that is known by what it and its preconditioner do to a vector.
 struct Operator {
@@ -57,41 +72,40 @@ Operator operator_of(const Matrix& s, const Product& times_m) {
   const Index n = s.states(), k = s.b.cols(), p = s.to.cols();
   const double a0 = s.a[0];
   Operator o;
-  o.multiply = [&s, times_m, n, k, a0](const VectorXd& x) {
-    VectorXd y(n + k), power = x.head(n);
-    y.head(n) = a0 * power + s.b * x.tail(k);
+  o.multiply = [&s, times_m, n, a0](const VectorXd& x) {
+    VectorXd power = x.head(n), y = a0 * power + s.b * s.border_of(x);
     for (std::size_t e = 1; e < s.a.size(); ++e) {
       power = times_m(power);
-      y.head(n) += s.a[e] * power;
+      y += s.a[e] * power;
     }
-    y.tail(k) = s.c.transpose() * x.head(n);
-    return y;
+    return VectorXd(s.joined(y, s.sum(s.c.transpose() * x.head(n))));
   };
   if (p + k == 0) {
     o.precondition = [a0](const VectorXd& x) { return VectorXd(x / a0); };
     return o;
   }
-  MatrixXd small(p + k, p + k);
-  small << a0 * MatrixXd::Identity(p, p) + s.from.transpose() * s.to, s.from.transpose() * s.b, s.c.transpose() * s.to,
-      s.c.transpose() * s.b;
-  o.precondition = [&s, lu = core::DenseLu<double>(small), n, k, p, a0](const VectorXd& x) {
-    VectorXd z(p + k), y(n + k);
-    z << s.from.transpose() * x.head(n), s.c.transpose() * x.head(n) - a0 * x.tail(k);
+  MatrixXd both(n, p + k), small(p + k, p + k), seen(n, p + k);
+  both << s.from, s.c;
+  seen << s.to, s.b;
+  small = s.sum(both.transpose() * seen);
+  small.topLeftCorner(p, p).diagonal().array() += a0;
+  o.precondition = [&s, lu = core::DenseLu<double>(small), both, seen, n, k, a0](const VectorXd& x) {
+    VectorXd z = s.sum(both.transpose() * x.head(n));
+    z.tail(k) -= a0 * s.border_of(x);
     z = lu.solve(z);
-    y << (x.head(n) - s.to * z.head(p) - s.b * z.tail(k)) / a0, z.tail(k);
-    return y;
+    return VectorXd(s.joined((x.head(n) - seen * z) / a0, z.tail(k)));
   };
   return o;
 }
 
-// The answers for the columns of `rhs` on this rank alone.
-void gmres(const Operator& o, const MatrixXd& rhs, MatrixXd& out) {
+// The answers for the columns of `rhs`. Collective on `comm`.
+void gmres(MPI_Comm comm, const Operator& o, const MatrixXd& rhs, MatrixXd& out) {
   const auto size = static_cast<PetscInt>(rhs.rows());
-  core::Gate gate(PETSC_COMM_SELF);
-  const core::Matrix shell = core::make_shell(PETSC_COMM_SELF, size, gate, action_of(o.multiply));
+  core::Gate gate(comm);
+  const core::Matrix shell = core::make_shell(comm, size, gate, action_of(o.multiply));
   const core::LinearSolver solver =
       core::make_krylov(shell.get(), gate, {"bordered_", KSPGMRES, 1e-12, 100, 100}, action_of(o.precondition));
-  const core::Vector b = core::make_vector(PETSC_COMM_SELF, size, size), x = core::duplicate(b.get());
+  const core::Vector b = core::make_vector(comm, size, PETSC_DETERMINE), x = core::duplicate(b.get());
   for (Index j = 0; j < rhs.cols(); ++j) {
     {
       const core::WriteArray a(b.get());
@@ -102,34 +116,46 @@ void gmres(const Operator& o, const MatrixXd& rhs, MatrixXd& out) {
       // Next to a singular system the last digits are rounding; normal forms need not have them.
       PetscReal left = 0;
       check(KSPGetResidualNorm(solver.get(), &left));
-      if (!(left <= 1e-8 * rhs.col(j).norm()))
-        throw core::NotConverged("a bordered system of the monodromy matrix does not converge");
+      const double whole = core::norm(b.get());
+      core::agree(comm, [&] {
+        if (!(left <= 1e-8 * whole))
+          throw core::NotConverged("a bordered system of the monodromy matrix does not converge");
+      });
     }
     const core::ReadArray a(x.get());
     out.col(j) = Map<const VectorXd>(a.data(), size);
   }
 }
 
-// Rank 0 iterates and decides; the others have their share in its products with M only.
 MatrixXd iterate(const Matrix& s, const MatrixXd& rhs) {
+  MPI_Comm comm = s.problem.comm(), rows = s.problem.rows();
   MatrixXd out(rhs.rows(), rhs.cols());
+  if (core::size_of(rows) > 1) {
+    gmres(rows, operator_of(s, s.times_m), rhs, out);
+    return out;
+  }
+  // Rank 0 iterates and decides; the others have their share in its products with M only.
   VectorXd moved(s.states());
   core::lead(
-      s.problem.comm(), 0,
+      comm, 0,
       [&](const std::function<void()>& together) {
         const auto times_m = [&](const VectorXd& x) {
           moved = x;
           together();
           return moved;
         };
-        gmres(operator_of(s, times_m), rhs, out);
+        gmres(PETSC_COMM_SELF, operator_of(s, times_m), rhs, out);
       },
       [&] {
-        core::share(s.problem.comm(), moved.data(), static_cast<std::size_t>(moved.size()));
-        moved = s.product_with_m(moved);
+        core::share(comm, moved.data(), static_cast<std::size_t>(moved.size()));
+        moved = s.times_m(moved);
       });
-  core::share(s.problem.comm(), out.data(), static_cast<std::size_t>(out.size()));
+  core::share(comm, out.data(), static_cast<std::size_t>(out.size()));
   return out;
+}
+
+Product product_of(PeriodicProblem& problem) {
+  return [&problem](const VectorXd& x) { return VectorXd(problem.times(x)); };
 }
 
 // sum a_e M^e where M is at hand.
@@ -143,10 +169,11 @@ MatrixXd whole_polynomial(const MatrixXd& m, const std::vector<double>& polynomi
 }
 
 // V and U of A ~ a_0 I + U V^T.
-void known_part(Composition& joined, const std::vector<double>& polynomial, MatrixXd& basis, MatrixXd& image) {
+void known_part(PeriodicProblem& problem, const std::vector<double>& polynomial, MatrixXd& basis, MatrixXd& image) {
   MatrixXd power;
-  joined.dominant(basis, power);
-  const MatrixXd inside = basis.transpose() * power;
+  problem.dominant(basis, power);
+  MatrixXd inside = basis.transpose() * power;
+  MPI_Allreduce(MPI_IN_PLACE, inside.data(), static_cast<int>(inside.size()), MPI_DOUBLE, MPI_SUM, problem.rows());
   image = MatrixXd::Zero(power.rows(), power.cols());
   for (std::size_t e = 1; e < polynomial.size(); ++e) {
     image += polynomial[e] * power;
@@ -154,19 +181,53 @@ void known_part(Composition& joined, const std::vector<double>& polynomial, Matr
   }
 }
 
+// LU of [A b; c^T 0] where M is at hand. The border in the size of A, so that neither disturbs the pivots of the other.
+core::DenseLu<double> bordered_lu(const MatrixXd& a, const MatrixXd& b, const MatrixXd& c, double& size) {
+  const Index n = a.rows(), k = b.cols();
+  size = std::max(a.norm() / std::sqrt(static_cast<double>(n)), 1e-300);
+  MatrixXd whole(n + k, n + k);
+  whole << a, size * b, size * c.transpose(), MatrixXd::Zero(k, k);
+  return core::DenseLu<double>(whole);
+}
+
+void share(const PeriodicProblem& problem, MatrixXd& values) {
+  core::share(problem.comm(), values.data(), static_cast<std::size_t>(values.size()));
+}
+
 }  // namespace
 
-MatrixXd solve_polynomial(CycleProblem& problem, const std::vector<double>& polynomial, const MatrixXd& rhs) {
-  Composition& joined = problem.composition();
-  if (joined.has_monodromy()) {
-    MatrixXd x = core::DenseLu<double>(whole_polynomial(joined.monodromy(), polynomial)).solve(rhs);
-    core::share(problem.comm(), x.data(), static_cast<std::size_t>(x.size()));
+MatrixXd solve_polynomial(PeriodicProblem& problem, const std::vector<double>& polynomial, const MatrixXd& rhs) {
+  if (const auto m = problem.matrix_of_period()) {
+    MatrixXd x = core::DenseLu<double>(whole_polynomial(*m, polynomial)).solve(rhs);
+    share(problem, x);
     return x;
   }
   MatrixXd basis, image;
-  known_part(joined, polynomial, basis, image);
+  known_part(problem, polynomial, basis, image);
   const MatrixXd none(rhs.rows(), 0);
-  return iterate({problem, polynomial, false, none, none, basis, image}, rhs);
+  return iterate({problem, polynomial, product_of(problem), none, none, basis, image}, rhs);
+}
+
+MatrixXd share_of_null_space(PeriodicProblem& problem, const std::vector<double>& polynomial, const MatrixXd& basis,
+                             const MatrixXd& rhs) {
+  const Index n = rhs.rows(), k = basis.cols();
+  MatrixXd g;
+  if (const auto m = problem.matrix_of_period()) {
+    double size = 1;
+    MatrixXd right = MatrixXd::Zero(n + k, rhs.cols());
+    right.topRows(n) = rhs;
+    g = bordered_lu(whole_polynomial(*m, polynomial), basis, basis, size).solve(right).bottomRows(k);
+    g *= size;
+    share(problem, g);
+    return g;
+  }
+  MatrixXd known, image;
+  known_part(problem, polynomial, known, image);
+  const Matrix s{problem, polynomial, product_of(problem), basis, basis, known, image};
+  const MatrixXd answer = iterate(s, s.joined(rhs, MatrixXd::Zero(k, rhs.cols())));
+  g.resize(k, rhs.cols());
+  for (Index j = 0; j < rhs.cols(); ++j) g.col(j) = s.border_of(answer.col(j));
+  return g;
 }
 
 BorderedMonodromy::BorderedMonodromy(CycleProblem& problem, Index k)
@@ -176,7 +237,7 @@ BorderedMonodromy::BorderedMonodromy(CycleProblem& problem, Index k)
   MatrixXd known, image;
   if (!problem.composition().has_monodromy()) {
     (void)problem.multipliers();  // leaves a dominant subspace
-    problem.composition().dominant(known, image);
+    problem.dominant(known, image);
   }
   const bool few = known.cols() < k;
   const Index p = few ? b_.rows() : known.cols();
@@ -195,24 +256,20 @@ BorderedMonodromy::BorderedMonodromy(CycleProblem& problem, Index k)
 void BorderedMonodromy::solve(const std::vector<double>& polynomial) {
   polynomial_ = polynomial;
   w_.resize(0, 0);
-  Composition& joined = problem_.composition();
   const Index n = b_.rows(), k = b_.cols();
-  if (joined.has_monodromy()) {
-    const MatrixXd a = whole_polynomial(joined.monodromy(), polynomial);
-    // The border in the size of A, so that neither disturbs the pivots of the other.
-    const double size = std::max(a.norm() / std::sqrt(static_cast<double>(n)), 1e-300);
-    MatrixXd whole(n + k, n + k), unit = MatrixXd::Zero(n + k, k);
-    whole << a, size * b_, size * c_.transpose(), MatrixXd::Zero(k, k);
+  if (const auto m = problem_.matrix_of_period()) {
+    double size = 1;
+    const core::DenseLu<double> lu = bordered_lu(whole_polynomial(*m, polynomial), b_, c_, size);
+    MatrixXd unit = MatrixXd::Zero(n + k, k);
     unit.bottomRows(k) = size * MatrixXd::Identity(k, k);
-    const core::DenseLu<double> lu(whole);
     MatrixXd right = lu.solve(unit), adjoint = lu.solve_transposed(unit);
-    for (MatrixXd* m : {&right, &adjoint}) core::share(problem_.comm(), m->data(), static_cast<std::size_t>(m->size()));
+    for (MatrixXd* part : {&right, &adjoint}) share(problem_, *part);
     v = right.topRows(n);
     g = size * right.bottomRows(k);
     w_ = adjoint.topRows(n);
     return;
   }
-  known_part(joined, polynomial, basis_, image_);
+  known_part(problem_, polynomial, basis_, image_);
   const MatrixXd right = null_vectors(false);
   v = right.topRows(n);
   g = right.bottomRows(k);
@@ -228,8 +285,9 @@ MatrixXd BorderedMonodromy::null_vectors(bool transposed) const {
   const Index n = b_.rows(), k = b_.cols();
   MatrixXd unit = MatrixXd::Zero(n + k, k);
   unit.bottomRows(k).setIdentity();
-  if (transposed) return iterate({problem_, polynomial_, true, c_, b_, image_, basis_}, unit);
-  return iterate({problem_, polynomial_, false, b_, c_, basis_, image_}, unit);
+  if (!transposed) return iterate({problem_, polynomial_, product_of(problem_), b_, c_, basis_, image_}, unit);
+  const Product back = [this](const VectorXd& x) { return VectorXd(problem_.composition().times_transposed(x)); };
+  return iterate({problem_, polynomial_, back, c_, b_, image_, basis_}, unit);
 }
 
 void BorderedMonodromy::update() {

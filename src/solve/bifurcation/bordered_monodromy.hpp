@@ -1,5 +1,5 @@
 #pragma once
-// Bordered systems of polynomials of the monodromy matrix.
+// Systems of polynomials of the monodromy matrix, bordered where they are singular.
 
 #include <Eigen/Core>
 #include <vector>
@@ -17,8 +17,8 @@ namespace whirl::solve {
 ///     [ a_0 I + V^T U   V^T b ] [ z ]   [ V^T r         ]
 ///     [ c^T U           c^T b ] [ g ] = [ c^T r - a_0 s ]      v = (r - U z - b g)/a_0
 ///
-/// Collective on the problem's communicator. The iteration is rank 0's: it alone decides, the others take part in the
-/// products.
+/// Collective on the problem's communicator. Where each rank has whole states the iteration is rank 0's: it alone
+/// decides, the others take part in the products. Where ranks share states each group of them iterates.
 class BorderedMonodromy {
 public:
   /// Borders that are generic and the same everywhere. `problem` outlives this and is linearised.
@@ -41,9 +41,15 @@ private:
   Eigen::MatrixXd basis_, image_;  // V, U
 };
 
-/// A^-1 r [n x columns] for A = a_0 I + a_1 M + ..., regular, at the problem's present linearisation: the above without
-/// a border. Throws core::NotConverged. Collective.
-[[nodiscard]] Eigen::MatrixXd solve_polynomial(CycleProblem& problem, const std::vector<double>& polynomial,
+/// A^-1 r [n_local x columns] for A = a_0 I + a_1 M + ..., regular, at the problem's present linearisation: the above
+/// without a border. Throws core::NotConverged. Collective.
+[[nodiscard]] Eigen::MatrixXd solve_polynomial(PeriodicProblem& problem, const std::vector<double>& polynomial,
                                                const Eigen::MatrixXd& rhs);
+
+/// g [k x columns] with r = `basis` g + a rest in the range of A, which loses rank by k, for its null vectors `basis`
+/// [n_local x k]: the above with b = c = basis, and right-hand side (r, 0). The left null vectors take no part.
+/// Throws core::NotConverged. Collective.
+[[nodiscard]] Eigen::MatrixXd share_of_null_space(PeriodicProblem& problem, const std::vector<double>& polynomial,
+                                                  const Eigen::MatrixXd& basis, const Eigen::MatrixXd& rhs);
 
 }  // namespace whirl::solve

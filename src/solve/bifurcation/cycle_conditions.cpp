@@ -160,6 +160,23 @@ private:
 
 }  // namespace
 
+std::unique_ptr<Condition> PeriodicProblem::condition(Event /*event*/, std::complex<double> /*critical*/) {
+  return nullptr;
+}
+
+std::unique_ptr<Condition> CycleProblem::condition(Event event, std::complex<double> critical) {
+  switch (event) {
+    case Event::cyclic_fold:
+      return make_cyclic_fold(*this);
+    case Event::flip:
+      return make_flip(*this);
+    case Event::neimark_sacker:
+      return make_neimark_sacker(*this, critical);
+    default:
+      return nullptr;
+  }
+}
+
 std::unique_ptr<Condition> make_cyclic_fold(CycleProblem& problem) {
   return std::make_unique<CyclicFoldCondition>(problem);
 }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "solve/bifurcation/bordered_monodromy.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/core/least_squares.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -17,8 +19,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-
-using Path = CycleProblem::Path;
 
 // A sum of motions over the same intervals.
 Path sum(std::initializer_list<std::pair<double, const Path*>> parts) {
@@ -36,7 +36,7 @@ Path sum(std::initializer_list<std::pair<double, const Path*>> parts) {
 // evaluated at cycles moved along a, for all b at once: they cost more than all the rest.
 class PeriodMap {
 public:
-  PeriodMap(CycleProblem& problem, Vec u, double step, const MotionSize& size)
+  PeriodMap(PeriodicProblem& problem, Vec u, double step, const MotionSize& size)
       : problem_(problem), u_(u), step_(step), size_(size) {}
 
   // D^2 R[a, b] at the collocation points, for each b.
@@ -74,7 +74,7 @@ private:
     MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, problem_.comm());
     return value > 0 ? value : 1;
   }
-  CycleProblem& problem_;
+  PeriodicProblem& problem_;
   Vec u_;
   double step_;
   const MotionSize& size_;
@@ -94,32 +94,46 @@ VectorXcd eigenvector_in(const MatrixXd& basis, const MatrixXd& product, Complex
   return basis * spectral::eigenpairs(plane).nearest(mu);
 }
 
-// Of the plane that belongs to a pair of multipliers beside the unit circle.
-void find_plane(BorderedMonodromy& bordered, Complex multiplier) {
-  find_null_vectors(bordered, {1, -2 * multiplier.real() / std::abs(multiplier), 1});
+// The start of the motion of a multiplier with a root mean square of one.
+VectorXcd critical_vector(PeriodicProblem& problem, Complex multiplier) {
+  VectorXcd q = problem.multiplier_vector(multiplier);
+  int unknown = q.size() == 0 && problem.state_scale().size() > 0;
+  MPI_Allreduce(MPI_IN_PLACE, &unknown, 1, MPI_INT, MPI_LOR, problem.comm());
+  if (unknown != 0) core::agree(problem.comm(), [] { throw core::NotConverged("no such multiplier was found"); });
+  double sums[] = {q.squaredNorm(), static_cast<double>(q.size())};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, problem.rows());
+  return q * std::sqrt(sums[1] / sums[0]);
+}
+
+// D^3 P(v, v, v) + 3 D^2 P(v, h) with (I - M) h = D^2 P(v, v).
+VectorXd cubic_end(PeriodicProblem& problem, Vec u, const VectorXd& v, double step, const MotionSize& size) {
+  PeriodMap map(problem, u, step, size);
+  const Path a = map.path(v);
+  // D^3 P takes D^2 R along the motion that leads to D^2 P(v, v), as does D^2 P(v, h) along that from h: the same term.
+  Path along;
+  const VectorXd h = solve_polynomial(problem, {1, -1}, map.end(map.second(a, {&a})[0], &along));
+  const Path more = map.path(h), b = sum({{1, &along}, {1, &more}});
+  return map.end(map.third(a, {&a}, map.tangents({&a}))[0] + 3 * map.second(a, {&b})[0]);
+}
+
+// Of (M - mu)(M - conj mu).
+std::vector<double> pair_polynomial(Complex mu) {
+  return {std::norm(mu), -2 * mu.real(), 1};
 }
 
 }  // namespace
 
-VectorXcd multiplier_vector(CycleProblem& problem, Complex multiplier) {
-  const bool real = multiplier.imag() == 0;
-  BorderedMonodromy bordered(problem, real ? 1 : 2);
-  find_null_vectors(bordered, real ? std::vector{-multiplier.real(), 1.0}
-                                   : std::vector{std::norm(multiplier), -2 * multiplier.real(), 1.0});
+VectorXcd CycleProblem::multiplier_vector(Complex mu) {
+  const bool real = mu.imag() == 0;
+  BorderedMonodromy bordered(*this, real ? 1 : 2);
+  find_null_vectors(bordered, real ? std::vector{-mu.real(), 1.0} : pair_polynomial(mu));
   if (real) return bordered.v.col(0).cast<Complex>();
-  return eigenvector_in(bordered.v, problem.composition().times(bordered.v), multiplier);
+  return eigenvector_in(bordered.v, times(bordered.v), mu);
 }
 
-double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multiplier, double step,
+double neimark_sacker_coefficient(PeriodicProblem& problem, Vec u, Complex multiplier, double step,
                                   const MotionSize& size) {
-  Composition& joined = problem.composition();
-  BorderedMonodromy bordered(problem, 2);
-  find_plane(bordered, multiplier);
-  // p^* q = 1 and |q|^2 = n
-  VectorXcd q = eigenvector_in(bordered.v, joined.times(bordered.v), multiplier),
-            p = eigenvector_in(bordered.left(), joined.times_transposed(bordered.left()), std::conj(multiplier));
-  q *= std::sqrt(static_cast<double>(q.size())) / q.norm();
-  p /= std::conj(p.dot(q));
+  const VectorXcd q = critical_vector(problem, multiplier);
   PeriodMap map(problem, u, step, size);
   const Complex i(0, 1);
   const Path r = map.path(q.real()), s = map.path(q.imag());
@@ -132,8 +146,8 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
   const Complex nu = multiplier * multiplier;
   MatrixXd parts(q.size(), 2);
   parts << rr - ss, 2 * rs;
-  parts = solve_polynomial(problem, {std::norm(nu), -2 * nu.real(), 1}, parts);
-  const MatrixXd moved = joined.times(parts);
+  parts = solve_polynomial(problem, pair_polynomial(nu), parts);
+  const MatrixXd moved = problem.times(parts);
   const VectorXcd h20 = std::conj(nu) * (parts.col(0) + i * parts.col(1)) - (moved.col(0) + i * moved.col(1));
   const Path mean = map.path(h11), x = map.path(h20.real()), y = map.path(h20.imag());
   // C(q, q, conj q) + 2 B(q, h11) + B(conj q, h20) of q = r + i s, h20 = x + i y. Of
@@ -146,30 +160,25 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
   const auto twice_r = map.second(r, {&with_r, &both}), twice_s = map.second(s, {&both, &with_s}),
              here = map.tangents({&r, &s}), cubic_r = map.third(r, {&r, &s}, here),
              cubic_s = map.third(s, {&r, &s}, here);
-  const VectorXcd end = map.end(cubic_r[0] + cubic_s[0] + twice_r[0] + twice_s[0]).cast<Complex>() +
-                        i * map.end(cubic_r[1] + cubic_s[1] + twice_r[1] + twice_s[1]).cast<Complex>();
-  const Complex c1 = 0.5 * p.dot(end);
+  MatrixXd plane(q.size(), 2), ends(q.size(), 2);
+  plane << q.real(), q.imag();
+  ends << map.end(cubic_r[0] + cubic_s[0] + twice_r[0] + twice_s[0]),
+      map.end(cubic_r[1] + cubic_s[1] + twice_r[1] + twice_s[1]);
+  // Of a r + b s, complex a and b, the share of q is (a - i b)/2.
+  const MatrixXd share = share_of_null_space(problem, pair_polynomial(multiplier), plane, ends);
+  const Eigen::Vector2cd in_plane = share.col(0) + i * share.col(1);
+  const Complex c1 = 0.25 * (in_plane(0) - i * in_plane(1));
   return (c1 / multiplier * std::abs(multiplier)).real();
 }
 
 double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorXd& w, double step,
                   const MotionSize& size) {
-  PeriodMap map(problem, u, step, size);
-  const Path a = map.path(v);
-  // D^3 P takes D^2 R along the motion that leads to D^2 P(v, v), as does D^2 P(v, h) along that from h: the same term.
-  Path along;
-  const VectorXd h = solve_polynomial(problem, {1, -1}, map.end(map.second(a, {&a})[0], &along));
-  const Path more = map.path(h), b = sum({{1, &along}, {1, &more}});
-  return w.dot(map.end(map.third(a, {&a}, map.tangents({&a}))[0] + 3 * map.second(a, {&b})[0])) / 6;
+  return w.dot(cubic_end(problem, u, v, step, size)) / 6;
 }
 
-double flip_coefficient(CycleProblem& problem, Vec u, double step, const MotionSize& size) {
-  BorderedMonodromy bordered(problem, 1);
-  find_null_vectors(bordered, {1, 1});
-  const VectorXd w = bordered.left().col(0);
-  VectorXd v = bordered.v.col(0).normalized();
-  v *= std::sqrt(static_cast<double>(v.size()));
-  return flip_cubic(problem, u, v, w, step, size) / w.dot(v);
+double flip_coefficient(PeriodicProblem& problem, Vec u, double step, const MotionSize& size) {
+  const VectorXd v = critical_vector(problem, -1).real();
+  return share_of_null_space(problem, {1, 1}, v, cubic_end(problem, u, v, step, size))(0, 0) / 6;
 }
 
 }  // namespace whirl::solve

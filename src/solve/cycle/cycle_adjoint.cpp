@@ -27,7 +27,7 @@ double CycleProblem::largest(const Path& path, MPI_Comm comm) {
   return value;
 }
 
-CycleProblem::Path CycleProblem::path_of(Vec v) const {
+Path CycleProblem::path_of(Vec v) const {
   const core::ReadArray a(v);
   return {previous_end(a.data()), Map<const MatrixXd>(a.data(), n_, count_ * scheme_.degree), border_of(v)};
 }
@@ -173,14 +173,14 @@ std::vector<MatrixXd> CycleProblem::tangents(Vec u, double step, const Path& a, 
   return y;
 }
 
-CycleProblem::Path CycleProblem::forward(const VectorXd& v) const {
+Path CycleProblem::forward(const VectorXd& v) const {
   Path path{composition_->entering(v), MatrixXd(n_, count_ * scheme_.degree), {}};
   VectorXd added = VectorXd::Zero(borders_);
   (void)run_.drive(nullptr, path.start, nullptr, path.nodes.data(), added);
   return path;
 }
 
-CycleProblem::Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
+Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
   // Ranks follow one another: what leaves one enters the next.
   Path path{VectorXd::Zero(n_), MatrixXd(n_, count_ * scheme_.degree), {}};
   const int n = static_cast<int>(n_);

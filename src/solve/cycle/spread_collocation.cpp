@@ -198,6 +198,29 @@ VectorXd SpreadCollocation::product(Index i, const VectorXd& start, const Vector
   return y;
 }
 
+std::vector<MatrixXd> SpreadCollocation::tangents_at(const MatrixXd& x, double period, const std::vector<MatrixXd>& b) {
+  const Index m = scheme().degree;
+  std::vector<MatrixXd> out(b.size(), MatrixXd(m * local(), intervals()));
+  const core::Vector value = core::duplicate(work()), rate = core::duplicate(work());
+  for (Index i = 0; i < intervals(); ++i)
+    for (Index j = 0; j < m; ++j) {
+      const double here = angle(begin(i) + length(i) * scheme().c(j));
+      interpolate(x, i, j, period);
+      core::check(VecCopy(value_.get(), value.get()));
+      core::check(VecCopy(rate_.get(), rate.get()));
+      for (const bool by_rate : {false, true}) {
+        tools_->point.jacobian(here, value.get(), rate.get(), by_rate ? 0 : 1, by_rate ? 1 : 0, tools_->matrix);
+        for (std::size_t k = 0; k < b.size(); ++k) {
+          interpolate(b[k], i, j, period);
+          core::check(MatMult(tools_->matrix.get(), by_rate ? rate_.get() : value_.get(), f_.get()));
+          auto part = out[k].col(i).segment(j * local(), local());
+          part = by_rate ? VectorXd(part + get(f_.get())) : get(f_.get());
+        }
+      }
+    }
+  return out;
+}
+
 MatrixXd SpreadCollocation::advance(Index i, const MatrixXd& start, const MatrixXd* rhs, bool rest) const {
   const SpreadInterval& interval = *intervals_[at(i)];
   const Index m = scheme().degree;

@@ -161,6 +161,58 @@ MatrixXd SpreadCycle::monodromy_times(const MatrixXd& v, MatrixXd& added) const 
   return state;
 }
 
+MatrixXd SpreadCycle::times(const MatrixXd& v) {
+  MatrixXd added;
+  return monodromy_times(v, added);
+}
+
+Path SpreadCycle::forward(const VectorXd& v) const {
+  const Index m = scheme_.degree;
+  Path path{v, MatrixXd(local_, count_ * m), {}};
+  MatrixXd state = v;
+  groups_.in_turn(state, [&] {
+    path.start = state;
+    for (Index i = 0; i < count_; ++i) {
+      const MatrixXd x = advance(i, state, nullptr, false);
+      state = x.bottomRows(local_);
+      path.nodes.middleCols(i * m, m) = x.reshaped(local_, m);
+    }
+  });
+  products_ += 1;
+  return path;
+}
+
+Path SpreadCycle::forced(const MatrixXd& y, VectorXd& end) const {
+  const Index m = scheme_.degree;
+  Path path{VectorXd::Zero(local_), MatrixXd(local_, count_ * m), {}};
+  MatrixXd state = path.start;
+  groups_.in_turn(state, [&] {
+    path.start = state;
+    for (Index i = 0; i < count_; ++i) {
+      const MatrixXd load = -y.col(i), x = advance(i, state, &load, first_ + i == 0);
+      state = x.bottomRows(local_);
+      path.nodes.middleCols(i * m, m) = x.reshaped(local_, m);
+    }
+  });
+  end = state;
+  products_ += 1;
+  return path;
+}
+
+std::vector<MatrixXd> SpreadCycle::tangents(Vec u, double step, const Path& a, const std::vector<const Path*>& b) {
+  const double period = begin_point(border_of(u));
+  const auto at_nodes = [&](const Path& path) {
+    MatrixXd x(local_, 1 + path.nodes.cols());
+    x << path.start, path.nodes;
+    return x;
+  };
+  const MatrixXd x = nodes(u) + step * at_nodes(a);
+  std::vector<MatrixXd> along, out;
+  for (const Path* path : b) along.push_back(at_nodes(*path));
+  groups_.together([&] { out = tangents_at(x, period, along); });
+  return out;
+}
+
 MatrixXd SpreadCycle::complement(const MatrixXd& v) const {
   MatrixXd inner = basis_.transpose() * v;
   sum(inner);
@@ -186,6 +238,7 @@ MatrixXd SpreadCycle::picard(const MatrixXd& right, MatrixXd& image, MatrixXd& a
 
 void SpreadCycle::linearise(Vec u, Vec row) {
   const double period = begin_point(border_of(u));
+  exact_ = false;
   {
     const MatrixXd x = nodes(u);
     groups_.together([&] { linearise_intervals(x, period); });

@@ -14,6 +14,7 @@ namespace whirl::solve {
 using core::check;
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 namespace {
@@ -154,28 +155,31 @@ std::vector<std::complex<double>> SpreadCycle::refined_multipliers() {
 
 std::vector<std::complex<double>> SpreadCycle::multipliers() {
   auto values = refined_multipliers();
-  if (!values.empty()) return values;
-  values = find_subspace();
-  find_image();
-  prepare();
+  if (values.empty()) {
+    values = find_subspace();
+    find_image();
+    prepare();
+  }
+  exact_ = true;
   return values;
 }
 
-// In the basis the motion is the eigenvector of V^T M V; the intervals carry it on.
+// In the basis the motion is the eigenvector of V^T M V.
+VectorXcd SpreadCycle::multiplier_vector(std::complex<double> mu) {
+  constexpr double same = 1e-6;
+  if (!exact_) (void)multipliers();
+  MatrixXd projected = basis_.transpose() * image_;
+  sum(projected);
+  const auto modes = spectral::eigenpairs(projected);
+  if (modes.values.size() == 0 || (modes.values.array() - mu).abs().minCoeff() > same) return {};
+  return basis_ * modes.nearest(mu);
+}
+
 MatrixXd SpreadCycle::critical_motion(double mu) {
   MatrixXd projected = basis_.transpose() * image_;
   sum(projected);
-  MatrixXd state = basis_ * spectral::eigenpairs(projected).nearest(mu).real().normalized();
-  const Index m = scheme_.degree;
-  MatrixXd motion(local_, count_ * m);
-  groups_.in_turn(state, [&] {
-    for (Index i = 0; i < count_; ++i) {
-      const MatrixXd x = advance(i, state, nullptr, false);
-      state = x.bottomRows(local_);
-      for (Index l = 0; l < m; ++l) motion.col(i * m + l) = scale_.cwiseProduct(x.col(0).segment(l * local_, local_));
-    }
-  });
-  return groups_.joined(motion, static_cast<Index>(mesh_.size()) - 1);
+  const Path motion = forward(basis_ * spectral::eigenpairs(projected).nearest(mu).real().normalized());
+  return groups_.joined(scale_.asDiagonal() * motion.nodes, static_cast<Index>(mesh_.size()) - 1);
 }
 
 }  // namespace whirl::solve

@@ -87,6 +87,19 @@ const MatrixXd& NewtonPicardProblem::columns(Index i) const {
   return links_.columns[at(i)];
 }
 
+std::vector<MatrixXd> NewtonPicardProblem::tangents_at(const MatrixXd& x, double period,
+                                                       const std::vector<MatrixXd>& b) {
+  MatrixXd ends, moved(local(), static_cast<Index>(b.size()));
+  march_all(x, period, ends, &next_);
+  std::vector<MatrixXd> out(b.size(), MatrixXd(local(), intervals()));
+  for (Index i = 0; i < intervals(); ++i) {
+    for (std::size_t k = 0; k < b.size(); ++k) moved.col(static_cast<Index>(k)) = b[k].col(i);
+    for (const StepDerivative& step : next_.steps[at(i)]) step.carry(moved);
+    for (std::size_t k = 0; k < b.size(); ++k) out[k].col(i) = b[k].col(i + 1) - moved.col(static_cast<Index>(k));
+  }
+  return out;
+}
+
 MatrixXd NewtonPicardProblem::advance(Index i, const MatrixXd& start, const MatrixXd* rhs, bool rest) const {
   if (rest) return rhs ? *rhs : start;
   MatrixXd x = start;

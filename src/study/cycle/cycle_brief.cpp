@@ -77,6 +77,7 @@ Largest largest_of(const Travel& t, bool stable_only) {
 void put_largest(io::Brief& brief, bool doubtful, const io::Group& group, const std::string& word,
                  const std::string& unit) {
   const std::vector<double>& stable = group.group("branch").reals("stable");
+  if (stable.empty()) return;
   const bool any = std::ranges::any_of(stable, [](double s) { return s > 0; });
   // Where the mesh does not tell, a multiplier inside the unit circle is no proof.
   const std::string cycles = doubtful ? "the cycles that are not known to be unstable" : "the stable cycles";

@@ -25,7 +25,7 @@ std::string CycleFollower::piece(const std::string& what) const {
 }
 
 // At u, where `problem` is linearised anew; not a number where there is no such normal form.
-double CycleFollower::normal_form(solve::CycleProblem& problem, system::Plant& system, solve::Event event,
+double CycleFollower::normal_form(solve::PeriodicProblem& problem, system::Plant& system, solve::Event event,
                                   std::complex<double> critical, Vec u, double step) const {
   if (autonomous() || (event != solve::Event::neimark_sacker && event != solve::Event::flip)) return io::no_value;
   core::Vector row = core::duplicate(u);
@@ -52,16 +52,16 @@ std::vector<double> CycleFollower::kept_numbers_on(const CycleMesh& mesh, const 
 
 void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u) {
   CycleNumbers here{found.parameter, std::abs(std::arg(found.critical)), cycle.period, io::no_value};
-  auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
   const bool fold = found.event == solve::Event::cyclic_fold, flip = found.event == solve::Event::flip,
              // Of a flip without film mesh the branch born there tells more: see set_criticality().
-      forms = cycles && found.refined && !fold && !autonomous() && (!flip || system_->has_film_mesh());
+      forms =
+          (found.refined || !problem_->has_adjoint()) && !fold && !autonomous() && (!flip || system_->has_film_mesh());
   double doubt = 0;
   if (fold && found.refined) here.coefficient = found.quadratic;
   if (forms) {
     const auto with = [&](const char* name, double step) {
       return pieces_->number(piece(name),
-                             [&] { return normal_form(*cycles, *system_, found.event, found.critical, u, step); });
+                             [&] { return normal_form(*problem_, *system_, found.event, found.critical, u, step); });
     };
     const DifferenceSteps steps = steps_of(law());
     here.coefficient = with("long normal form", steps.longer);

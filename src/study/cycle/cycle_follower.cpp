@@ -16,6 +16,7 @@
 #include "study/bifurcation.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/make_plant.hpp"
+#include "study/state_rows.hpp"
 #include "study/tabled_speeds.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -104,13 +105,15 @@ solve::Stability cycle_stability(solve::PeriodicProblem& problem, system::Plant&
   solve::Stability out;
   out.unknown = !has_answer([&] { values = problem.multipliers(); });
   if (out.unknown) return out;
-  auto* cycles = dynamic_cast<solve::CycleProblem*>(&problem);
-  const bool asked = cycles && may_have_mesh_waves(system);
+  const bool asked = may_have_mesh_waves(system);
   const auto is_wave = [&](std::complex<double> mu) {
     std::optional<double> cells;
     (void)has_answer([&] {
-      const Eigen::VectorXcd q = solve::multiplier_vector(*cycles, mu);
-      if (q.size() == system.size()) cells = cells_per_wave(system, {q.data(), q.data() + q.size()});
+      const Eigen::VectorXcd q = problem.multiplier_vector(mu);
+      const std::vector<double> re = whole_of(problem.rows(), q.real()), im = whole_of(problem.rows(), q.imag());
+      std::vector<std::complex<double>> shape;
+      for (std::size_t k = 0; k < re.size(); ++k) shape.emplace_back(re[k], im[k]);
+      cells = cells_per_wave(system, shape);
     });
     return cells.has_value();
   };
@@ -288,9 +291,9 @@ StudyResult CycleFollower::run() {
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
   callbacks.drawn = [this](Vec v) { return drawn(v); };
-  if (auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get()))
-    callbacks.refine = [this, cycles](const solve::LocatedEvent& e, Vec v, Vec t) {
-      return solve::refine(*cycles, e, v, t, newton_);
+  if (problem_->has_adjoint())
+    callbacks.refine = [this](const solve::LocatedEvent& e, Vec v, Vec t) {
+      return solve::refine(*problem_, e, v, t, newton_);
     };
   // The branch has touched, as it was asked to, or its film has become too thin.
   bool contact = false;

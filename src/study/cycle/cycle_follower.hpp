@@ -81,7 +81,7 @@ struct Parabola {
 [[nodiscard]] double distance_of_multiplier(std::complex<double> mu);
 /// The Floquet multipliers of a cycle at which `problem` is linearised. Those that belong to waves of a film's mesh are
 /// not among them but for strongly damped ones; Stability::mesh_waves has those outside the unit circle (of pairs the
-/// one with imag > 0). Of problems that do not know their monodromy matrix all stay. Collective.
+/// one with imag > 0). Collective.
 [[nodiscard]] solve::Stability cycle_stability(solve::PeriodicProblem& problem, system::Plant& system);
 
 /// The solver's problem, what is recorded of the branch, and how to restart it. Collective throughout.
@@ -215,7 +215,7 @@ private:
   /// numbers_on() of the event that comes next, unless known; empty if it cannot be had.
   [[nodiscard]] std::vector<double> kept_numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
                                                     const solve::Cycle& cycle, bool with_coefficient) const;
-  [[nodiscard]] double normal_form(solve::CycleProblem& problem, system::Plant& system, solve::Event event,
+  [[nodiscard]] double normal_form(solve::PeriodicProblem& problem, system::Plant& system, solve::Event event,
                                    std::complex<double> critical, Vec u, double step) const;
   void put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u);
   /// The cycle with the own states of its films on the meshes of `to`.

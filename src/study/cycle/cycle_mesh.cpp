@@ -191,14 +191,25 @@ std::optional<CycleNumbers> CycleFollower::fold_on(const CycleMesh& mesh, const 
   check(VecScale(row.get(), 1 / std::sqrt(solve::inner(problem, tangent.get(), tangent.get()))));
   double offset = 0;
   check(VecDot(row.get(), u.get(), &offset));
-  if (auto* cycles = dynamic_cast<solve::CycleProblem*>(&problem)) {
-    const auto there = solve::refine(*cycles, found, u.get(), solve::any_tangent(problem, u.get()).get(), newton_);
+  if (problem.has_adjoint()) {
+    const auto there = solve::refine(problem, found, u.get(), solve::any_tangent(problem, u.get()).get(), newton_);
     if (there && std::abs(there->parameter - found.parameter) < continuation_.max_step)
       return CycleNumbers{there->parameter, 0, problem.gather(there->u.get()).period, there->quadratic};
   }
   if (!solve::newton(problem, u.get(), row.get(), offset, newton_).converged) return {};
   return CycleNumbers{solve::last_entry(problem.comm(), u.get()), 0, problem.gather(u.get()).period, io::no_value};
 }
+
+namespace {
+
+std::optional<std::complex<double>> nearest_multiplier(solve::PeriodicProblem& problem, std::complex<double> critical) {
+  const auto apart = [&](auto mu) { return std::min(std::abs(mu - critical), std::abs(mu - std::conj(critical))); };
+  const std::vector<std::complex<double>> all = problem.multipliers();
+  if (all.empty()) return {};
+  return *std::ranges::min_element(all, {}, apart);
+}
+
+}  // namespace
 
 std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
                                                       const solve::Cycle& cycle, bool with_coefficient) const {
@@ -209,41 +220,47 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
     // On a coarser film the bifurcation is far and the film cheap, and a normal form is that of the bifurcation: it is
     // located there, from the cycle as it was carried over or, where that is too rough, as it is at the same parameter.
     // Elsewhere the slope tells.
-    auto* cycles = dynamic_cast<solve::CycleProblem*>(there->problem.get());
-    const bool locate = cycles && (with_coefficient || (mesh.axis != Axis::time && mesh.spacing > 1));
+    solve::PeriodicProblem& problem = *there->problem;
+    system::Plant& system = there->other ? *there->other : *system_;
+    const bool by_condition = problem.has_adjoint(),
+               locate = by_condition && (with_coefficient || (mesh.axis != Axis::time && mesh.spacing > 1));
     const auto located = [&]() -> std::optional<CycleNumbers> {
       if (!locate) return {};
-      const core::Vector tangent = solve::any_tangent(*cycles, there->u.get());
-      const auto refined = solve::refine(*cycles, found, there->u.get(), tangent.get(), newton_);
+      const core::Vector tangent = solve::any_tangent(problem, there->u.get());
+      const auto refined = solve::refine(problem, found, there->u.get(), tangent.get(), newton_);
       if (!refined) return {};
-      return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
-                          cycles->gather(refined->u.get()).period,
-                          with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
-                                                         refined->critical, refined->u.get(), steps_of(law()).longer)
-                                           : io::no_value};
+      return CycleNumbers{
+          refined->parameter, std::abs(std::arg(refined->critical)), problem.gather(refined->u.get()).period,
+          with_coefficient
+              ? normal_form(problem, system, found.event, refined->critical, refined->u.get(), steps_of(law()).longer)
+              : io::no_value};
     };
     if (const auto numbers = located()) return numbers;
     if (!correct_there(*there, cycle)) return {};
     if (const auto numbers = located()) return numbers;
     if (locate) {
       core::Vector row = core::duplicate(there->u.get());
-      solve::parameter_row(*there->problem, row.get());
-      there->problem->linearise(there->u.get(), row.get());
+      solve::parameter_row(problem, row.get());
+      problem.linearise(there->u.get(), row.get());
     }
     // The distance from the border there over its slope along the branch.
-    double nearest = std::numeric_limits<double>::infinity();
     CycleNumbers out{io::no_value, io::no_value, io::no_value, io::no_value};
-    for (const auto& mu : there->problem->multipliers()) {
-      const double apart = std::min(std::abs(mu - found.critical), std::abs(mu - std::conj(found.critical)));
-      if (apart >= nearest) continue;
-      nearest = apart;
+    const std::optional<std::complex<double>> nearest = nearest_multiplier(problem, found.critical);
+    if (nearest) {
+      const std::complex<double> mu = *nearest;
       // In time the bifurcation hardly moves; by a film it does, and angle and period with it.
-      if (mesh.axis == Axis::time || !cycles) {
+      if (mesh.axis == Axis::time || !by_condition) {
         out.angle = std::abs(std::arg(mu));
-        out.period = there->problem->gather(there->u.get()).period;
+        out.period = problem.gather(there->u.get()).period;
       }
       if (found.sensitivity != 0) out.place = found.parameter - distance_of_multiplier(mu) / found.sensitivity;
     }
+    if (!with_coefficient || by_condition || !std::isfinite(out.place)) return out;
+    solve::Cycle moved = cycle;
+    moved.parameter = out.place * scale_;
+    if (!correct_there(*there, moved)) return out;
+    if (const auto mu = nearest_multiplier(problem, found.critical))
+      out.coefficient = normal_form(problem, system, found.event, *mu, there->u.get(), steps_of(law()).longer);
     return out;
   });
 }

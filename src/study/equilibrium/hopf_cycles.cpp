@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
+#include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/bifurcation/harmonic_cycle.hpp"
 
@@ -17,12 +19,10 @@ solve::MotionSize motion_of_places(system::Plant& system) {
   core::Vector scale = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE),
                rows = core::duplicate(scale.get());
   system.scales(scale.get(), rows.get());
-  return [&system, unit = core::gather(scale.get()), clearances = places.clearances](const Eigen::VectorXd& v) {
+  return [states = std::make_shared<StateRows>(system), unit = rows_of(scale.get()),
+          clearances = places.clearances](const Eigen::VectorXd& v) {
     // Places are affine in the state.
-    std::vector<double> at(unit.size(), 0.0);
-    const auto still = system.shown(at.data());
-    for (std::size_t i = 0; i < at.size(); ++i) at[i] = unit[i] * v(static_cast<Eigen::Index>(i));
-    const auto moved = system.shown(at.data());
+    const auto still = states->shown(Eigen::VectorXd::Zero(v.size())), moved = states->shown(unit.cwiseProduct(v));
     double most = 0;
     for (std::size_t k = 0; k < moved.size(); ++k)
       if (clearances[k] > 0)

@@ -137,7 +137,7 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
   branch_ = cycles_.get();
   const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());
-  condition_ = solve::condition_of(*cycles_, seed_.event, seed_.critical);
+  condition_ = cycles_->condition(seed_.event, seed_.critical);
 }
 
 void LocusFollower::make_equilibria() {

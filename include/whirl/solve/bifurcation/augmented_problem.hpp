@@ -100,15 +100,14 @@ private:
 
 /// The same for an event met on a branch, for BranchCallbacks::refine; nothing for events without a condition. With a
 /// replay log what was found of an event of cycles is kept.
-[[nodiscard]] std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
+[[nodiscard]] std::optional<Refined> refine(PeriodicProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
                                             const NewtonOptions& options);
 [[nodiscard]] std::optional<Refined> refine(problem::System& system, EquilibriumProblem& problem,
                                             const LocatedEvent& event, Vec u, Vec tangent,
                                             const NewtonOptions& options);
 
-/// The condition of an event with the given critical multiplier or eigenvalue [1/s]; null for branch points.
-[[nodiscard]] std::unique_ptr<Condition> condition_of(CycleProblem& problem, Event event,
-                                                      std::complex<double> critical);
+/// The condition of an event with the given critical eigenvalue [1/s]; null for branch points. Those of cycles:
+/// PeriodicProblem::condition().
 [[nodiscard]] std::unique_ptr<Condition> condition_of(problem::System& system, EquilibriumProblem& problem, Event event,
                                                       std::complex<double> critical);
 

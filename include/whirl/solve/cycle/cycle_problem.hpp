@@ -81,6 +81,13 @@ public:
   /// where a dense band of them lies above 0.2, those above 0.5.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
+  [[nodiscard]] Eigen::VectorXcd multiplier_vector(std::complex<double> mu) override;
+  [[nodiscard]] MPI_Comm rows() const override { return MPI_COMM_SELF; }
+  [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& v) override { return composition_->times(v); }
+  [[nodiscard]] std::optional<Eigen::MatrixXd> matrix_of_period() override {
+    return composition_->has_monodromy() ? std::optional(composition_->monodromy()) : std::nullopt;
+  }
+  void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { composition_->dominant(v, image); }
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
   /// Large with own states of films, where nothing else forms it. Collective.
   [[nodiscard]] Eigen::MatrixXd monodromy() const;
@@ -96,28 +103,17 @@ public:
 
   void solve_transposed(Vec rhs, Vec x) override;
   void curvature(Vec u, Vec v, Vec w, Vec out) override;
-  /// A motion over this rank's intervals, scaled: the state before them [n] and those at their nodes [n x local nodes],
-  /// with changes of the border unknowns ([period,] parameter; scaled).
-  struct Path {
-    Eigen::VectorXd start;
-    Eigen::MatrixXd nodes;
-    Eigen::VectorXd border;
-  };
-  /// The linearised motion from the scaled start v [n], not closed to a period: its end is monodromy() v. Not
-  /// collective.
-  [[nodiscard]] Path forward(const Eigen::VectorXd& v) const;
-  /// The motion from rest under -y, y [mn x local intervals] at the collocation points, and its end after one period
-  /// [n], the same on every rank. Collective.
-  [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const;
+  [[nodiscard]] bool has_adjoint() const override { return true; }
+  [[nodiscard]] std::unique_ptr<Condition> condition(Event event, std::complex<double> critical) override;
+  [[nodiscard]] Path forward(const Eigen::VectorXd& v) const override;
+  [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const override;
   /// Weights [mn x local intervals] of the equations with w . monodromy() v = -(sum weights . dR V) for changes dR of
   /// the linearised equations along the motion V = forward(v). Not collective.
   [[nodiscard]] Eigen::MatrixXd backward(const Eigen::VectorXd& w) const;
   /// Gradients [layout of u] of sum_i weights_i . dR_i/dx(u) V, one for each `weights`: those of -w . monodromy() v.
   [[nodiscard]] std::vector<core::Vector> gradients(Vec u, const Path& v, const std::vector<Eigen::MatrixXd>& weights);
-  /// dR/dx(u + step a) b at the collocation points [mn x local intervals], for each of the `b`; the films are evaluated
-  /// once. Collective.
   [[nodiscard]] std::vector<Eigen::MatrixXd> tangents(Vec u, double step, const Path& a,
-                                                      const std::vector<const Path*>& b);
+                                                      const std::vector<const Path*>& b) override;
 
 protected:
   /// False where the equations of an interval are not those of collocation, and films cannot settle in it by

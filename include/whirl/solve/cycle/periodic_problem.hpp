@@ -3,12 +3,26 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "whirl/solve/cycle/cycle.hpp"
 #include "whirl/solve/newton/extended_problem.hpp"
 
 namespace whirl::solve {
+
+class Condition;
+enum class Event;
+
+/// A motion over the intervals that this rank evaluates, scaled, each rank its rows of the states: the state before
+/// them [n_local] and those at their nodes [n_local x local nodes], with changes of the border unknowns ([period,]
+/// parameter; scaled; empty: none).
+struct Path {
+  Eigen::VectorXd start;
+  Eigen::MatrixXd nodes;
+  Eigen::VectorXd border;
+};
 
 /// Equations of a periodic solution with unknowns u = (states at the nodes of a mesh, [period,] parameter).
 ///
@@ -43,6 +57,36 @@ public:
   /// Cycle::x [n_local x N m] (SI); the norm of the scaled v(0) is one and its sign is arbitrary but the same on every
   /// rank.
   [[nodiscard]] virtual Eigen::MatrixXd critical_motion(double mu) = 0;
+  /// The start q [n_local] of the motion of a multiplier, in scaled states: M q = mu q. Empty if no such multiplier is
+  /// known. Throws core::NotConverged.
+  [[nodiscard]] virtual Eigen::VectorXcd multiplier_vector(std::complex<double> mu) = 0;
+
+  // The map over one period, x(0) -> x(1), whose derivative is the monodromy matrix M.
+
+  /// The ranks that share the rows of one state.
+  [[nodiscard]] virtual MPI_Comm rows() const = 0;
+  /// M v [n_local x k].
+  [[nodiscard]] virtual Eigen::MatrixXd times(const Eigen::MatrixXd& v) = 0;
+  /// M on every rank, where it is at hand and each rank has all rows.
+  [[nodiscard]] virtual std::optional<Eigen::MatrixXd> matrix_of_period() = 0;
+  /// V [n_local x p] and M V: an orthonormal basis that once belonged to the largest multipliers, so that
+  /// M ~ (M V) V^T. Empty if none is known.
+  virtual void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) = 0;
+  /// The linearised motion from the scaled start v, not closed to a period: its end is M v.
+  [[nodiscard]] virtual Path forward(const Eigen::VectorXd& v) const = 0;
+  /// The motion from rest under -y, y [m n_local x local intervals] at the equations of the intervals, and its end
+  /// after one period [n_local].
+  [[nodiscard]] virtual Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const = 0;
+  /// dR/dx(u + step a) b of the intervals, as y of forced(), for each of the `b`; the films are evaluated once. The
+  /// linearisation stays.
+  [[nodiscard]] virtual std::vector<Eigen::MatrixXd> tangents(Vec u, double step, const Path& a,
+                                                              const std::vector<const Path*>& b) = 0;
+
+  /// Whether it solves transposed equations, which conditions of bifurcations want.
+  [[nodiscard]] virtual bool has_adjoint() const { return false; }
+  /// The condition of an event with the given critical multiplier; null without transposed equations, and for events
+  /// that have none.
+  [[nodiscard]] virtual std::unique_ptr<Condition> condition(Event event, std::complex<double> critical);
 };
 
 }  // namespace whirl::solve

@@ -77,6 +77,16 @@ public:
   }
   /// `mu` is above the radius.
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
+  /// Empty unless the subspace has it.
+  [[nodiscard]] Eigen::VectorXcd multiplier_vector(std::complex<double> mu) override;
+  [[nodiscard]] MPI_Comm rows() const override { return system_.comm(); }
+  [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& v) override;
+  [[nodiscard]] std::optional<Eigen::MatrixXd> matrix_of_period() override { return {}; }
+  void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { v = basis_, image = image_; }
+  [[nodiscard]] Path forward(const Eigen::VectorXd& v) const override;
+  [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const override;
+  [[nodiscard]] std::vector<Eigen::MatrixXd> tangents(Vec u, double step, const Path& a,
+                                                      const std::vector<const Path*>& b) override;
   /// Size of the subspace, and products of the monodromy matrix with a vector since the start.
   [[nodiscard]] Eigen::Index subspace() const { return basis_.cols(); }
   [[nodiscard]] long products() const { return products_; }
@@ -104,6 +114,10 @@ protected:
   /// A0_i start + A_i x [m local].
   [[nodiscard]] virtual Eigen::VectorXd product(Eigen::Index i, const Eigen::VectorXd& start,
                                                 const Eigen::VectorXd& x) const = 0;
+  /// The derivative of R at nodes x along each of the motions b, given at the nodes like x: [m local x N] each. The
+  /// linearisation stays.
+  [[nodiscard]] virtual std::vector<Eigen::MatrixXd> tangents_at(const Eigen::MatrixXd& x, double period,
+                                                                 const std::vector<Eigen::MatrixXd>& b) = 0;
   /// x'(s) of a reference at node l = 1..m of interval i, in scaled states [local]; `x` are its nodes.
   [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
                                                        Eigen::Index l) = 0;
@@ -167,6 +181,7 @@ private:
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
   Eigen::MatrixXd q_ends_, image_q_ends_;
   bool image_known_ = false, rough_image_ = false;  // the same on all ranks: sizes are not, some have no states
+  bool exact_ = false;                              // V and M V are those of multipliers()
   double contraction_ = 0;                          // of the error of V by one iteration, as last seen
   core::DenseLu<double> small_;
   mutable long products_ = 0;

@@ -35,6 +35,8 @@ private:
                                         bool rest) const override;
   [[nodiscard]] Eigen::VectorXd product(Eigen::Index i, const Eigen::VectorXd& start,
                                         const Eigen::VectorXd& x) const override;
+  [[nodiscard]] std::vector<Eigen::MatrixXd> tangents_at(const Eigen::MatrixXd& x, double period,
+                                                         const std::vector<Eigen::MatrixXd>& b) override;
   [[nodiscard]] Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
                                                Eigen::Index l) override;
   struct Links {
