@@ -50,6 +50,11 @@ std::optional<Relative> relative_of(std::string_view text, bool append) {
   return Relative{1, std::string(written.rest)};
 }
 
+std::string_view without_spaces(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  return text;
+}
+
 // A number of this value that is not zero, as it is written; empty if there is none.
 std::string not_zero(const Node& n) {
   for (const Node& i : n.items)
@@ -65,7 +70,7 @@ std::string not_zero(const Node& n) {
 // A length with a sign used to be added to the value. For one version it is refused where the two readings differ, so
 // that no deck or command of before silently runs another machine.
 void refuse_two_readings(std::string_view text, const Node& now, const Spec& spec) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  text = without_spaces(text);
   if (text.empty() || (text[0] != '+' && text[0] != '-')) return;
   const Split s = split_quantity(text);
   if (spec.unit != "m" && (spec.unit != "*" || !same_kind(s.unit, "m"))) return;
@@ -190,21 +195,18 @@ private:
     // not begun by its clearance.
     const bool of_a_kind =
         std::all_of(at.items.begin(), at.items.end(), [](const Node& n) { return n.kind == Node::Kind::map; });
+    std::vector<std::string> names;
+    for (const Node& n : at.items) names.push_back(n.key);
     if (i + 1 < steps_.size() && of_a_kind) {
-      std::vector<std::string> names;
-      for (const Node& n : at.items) names.push_back(n.key);
-      if (const std::string hint = did_you_mean(step, names); !hint.empty()) {
+      if (const std::string hint = did_you_mean(step, names); !hint.empty())
         throw InputError(fmt::format("there is no '{}'{}; a new one is given whole: --set {}={{...}}", step, hint,
                                      whole_path(step)));
-      }
     }
     if (const std::string hint = hint_at(step, i); !hint.empty())
       throw InputError(fmt::format("there is no '{}'{}", whole_path(step), hint));
     require_key(step);
     if (i + 1 < steps_.size()) {
       const bool item = of_a_kind && path_.size() == 1;
-      std::vector<std::string> names;
-      for (const Node& n : at.items) names.push_back(n.key);
       if (begun_.empty())
         begun_ = fmt::format("'{}'{}", whole_path(step), item ? did_you_mean_one_of(step, names) : std::string());
       new_item_ = new_item_ || item;
@@ -343,13 +345,10 @@ private:
 }  // namespace
 
 Written written_as(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  text = without_spaces(text);
   if (text.starts_with("x")) return {Written::As::factor, text.substr(1)};
-  if (text.starts_with("by ") || text.starts_with("by+") || text.starts_with("by-")) {
-    text.remove_prefix(2);
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    return {Written::As::change, text};
-  }
+  if (text.starts_with("by ") || text.starts_with("by+") || text.starts_with("by-"))
+    return {Written::As::change, without_spaces(text.substr(2))};
   const bool has_sign = text.starts_with("+") || text.starts_with("-");
   if (has_sign && text.ends_with("%")) return {Written::As::change, text};
   return {Written::As::value, text};
@@ -372,8 +371,7 @@ Edit parse_edit(const std::string& argument, std::string_view cited) {
   Edit edit{argument.substr(0, equals - (append ? 1 : 0)), append, {}, place};
   if (edit.path.empty()) fail("expected PATH+=VALUE");
   // What other programs take for a factor, YAML takes for a name; /2024/seal.csv is one.
-  std::string_view text = std::string_view(argument).substr(equals + 1);
-  while (text.starts_with(' ')) text.remove_prefix(1);
+  const std::string_view text = without_spaces(std::string_view(argument).substr(equals + 1));
   double number = 0;
   const char* end = text.data() + text.size();
   if (text.size() > 1 && (text[0] == '*' || text[0] == '/') && std::from_chars(text.data() + 1, end, number).ptr == end)
