@@ -19,6 +19,18 @@ hid_t utf8() {
   return t;
 }
 
+hid_t in_memory() {
+  const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
+  if (list >= 0) check(H5Pset_fapl_core(list, std::size_t{1} << 20, false));
+  return list;
+}
+
+hid_t space_of(const Shape& shape) {
+  const std::vector<hsize_t> extents(shape.begin(), shape.end());
+  return extents.empty() ? H5Screate(H5S_SCALAR)
+                         : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr);
+}
+
 void write_attribute(hid_t at, const std::string& name, const Attribute& value) {
   const Space scalar(H5Screate(H5S_SCALAR));
   if (const auto* s = std::get_if<std::string>(&value)) {
@@ -54,6 +66,20 @@ void write_labels(hid_t at, const Dataset& data) {
   }
 }
 
+// `n` texts, which `load` reads as the type that it is given.
+template <class Load>
+std::vector<std::string> read_texts(std::size_t n, const Load& load) {
+  const Type memory(utf8());
+  std::vector<char*> texts(n, nullptr);
+  load(memory, static_cast<void*>(texts.data()));
+  std::vector<std::string> out;
+  for (char* c : texts) {
+    out.emplace_back(c ? c : "");
+    H5free_memory(c);
+  }
+  return out;
+}
+
 std::vector<std::vector<std::string>> read_labels(hid_t at) {
   std::vector<std::vector<std::string>> labels;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -61,14 +87,8 @@ std::vector<std::vector<std::string>> read_labels(hid_t at) {
     labels.resize(k);
     const Attr a(H5Aopen(at, name_of_labels(k).c_str(), H5P_DEFAULT));
     const Space space(H5Aget_space(a));
-    std::vector<char*> texts(static_cast<std::size_t>(H5Sget_select_npoints(space)), nullptr);
-    const Type memory(utf8());
-    check(H5Aread(a, memory, static_cast<void*>(texts.data())));
-    auto& out = labels.emplace_back();
-    for (char* c : texts) {
-      out.emplace_back(c ? c : "");
-      H5free_memory(c);
-    }
+    labels.push_back(read_texts(static_cast<std::size_t>(H5Sget_select_npoints(space)),
+                                [&](hid_t type, void* texts) { check(H5Aread(a, type, texts)); }));
   }
   return labels;
 }
@@ -77,10 +97,7 @@ std::vector<std::vector<std::string>> read_labels(hid_t at) {
 constexpr H5D_fill_time_t of_rows = H5D_FILL_TIME_NEVER;
 
 void write_dataset(hid_t at, const std::string& name, const Dataset& data) {
-  const Shape shape = data.whole_shape();
-  const std::vector<hsize_t> extents(shape.begin(), shape.end());
-  const Space space(extents.empty() ? H5Screate(H5S_SCALAR)
-                                    : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr));
+  const Space space(space_of(data.whole_shape()));
   const List how(H5Pcreate(H5P_DATASET_CREATE));
   if (data.share) check(H5Pset_fill_time(how, of_rows));
   const auto store = [&](hid_t file_type, hid_t memory_type, const void* values) {
@@ -102,9 +119,45 @@ void write_dataset(hid_t at, const std::string& name, const Dataset& data) {
   }
 }
 
-std::vector<std::string> names_of_attributes(hid_t at);
-std::vector<std::string> names_of_links(hid_t at);
-Attribute read_attribute(hid_t at, const char* name);
+// Callbacks only collect names, so that no exception crosses HDF5's frames.
+template <class Info>
+herr_t collect(hid_t /*at*/, const char* name, const Info* /*info*/, void* out) {
+  static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+  return 0;
+}
+std::vector<std::string> names_of_attributes(hid_t at) {
+  std::vector<std::string> names;
+  check(H5Aiterate2(at, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5A_info_t>, &names));
+  return names;
+}
+std::vector<std::string> names_of_links(hid_t at) {
+  std::vector<std::string> names;
+  check(H5Literate(at, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect<H5L_info_t>, &names));
+  return names;
+}
+
+Attribute read_attribute(hid_t at, const char* name) {
+  const Attr a(H5Aopen(at, name, H5P_DEFAULT));
+  const Type type(H5Aget_type(a));
+  double real = 0;
+  std::int64_t integer = 0;
+  switch (H5Tget_class(type)) {
+    case H5T_STRING:
+      return read_texts(1, [&](hid_t memory, void* text) { check(H5Aread(a, memory, text)); }).front();
+    case H5T_FLOAT:
+      check(H5Aread(a, H5T_NATIVE_DOUBLE, &real));
+      return real;
+    case H5T_INTEGER:
+      check(H5Aread(a, H5T_NATIVE_INT64, &integer));
+      return integer;
+    default:
+      throw core::Error(std::string("attribute '") + name + "' has a type that is not ours");
+  }
+}
+
+void set(Group& group, const std::string& name, const Attribute& value) {
+  std::visit([&](const auto& v) { group.set(name, v); }, value);
+}
 
 // Names of attributes of a group that is left in a file: they are never written.
 constexpr const char *left_file = "left in file", *left_place = "left at";
@@ -127,57 +180,6 @@ void write_group(hid_t at, const Group& group) {
   for (const auto& [name, sub] : group.groups()) {
     const GroupId g(H5Gcreate2(at, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     write_group(g, sub);
-  }
-}
-
-// Callbacks only collect names, so that no exception crosses HDF5's frames.
-std::vector<std::string> names_of_attributes(hid_t at) {
-  std::vector<std::string> names;
-  check(H5Aiterate2(
-      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-      [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
-        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
-        return 0;
-      },
-      &names));
-  return names;
-}
-std::vector<std::string> names_of_links(hid_t at) {
-  std::vector<std::string> names;
-  check(H5Literate(
-      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-      [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
-        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
-        return 0;
-      },
-      &names));
-  return names;
-}
-
-Attribute read_attribute(hid_t at, const char* name) {
-  const Attr a(H5Aopen(at, name, H5P_DEFAULT));
-  const Type type(H5Aget_type(a));
-  switch (H5Tget_class(type)) {
-    case H5T_STRING: {
-      const Type memory(utf8());
-      char* c = nullptr;
-      check(H5Aread(a, memory, static_cast<void*>(&c)));
-      std::string s = c ? c : "";
-      H5free_memory(c);
-      return s;
-    }
-    case H5T_FLOAT: {
-      double d = 0;
-      check(H5Aread(a, H5T_NATIVE_DOUBLE, &d));
-      return d;
-    }
-    case H5T_INTEGER: {
-      std::int64_t i = 0;
-      check(H5Aread(a, H5T_NATIVE_INT64, &i));
-      return i;
-    }
-    default:
-      throw core::Error(std::string("attribute '") + name + "' has a type that is not ours");
   }
 }
 
@@ -208,12 +210,10 @@ Dataset read_dataset(hid_t at, const char* name, const Reader* reader) {
     data.shape.front() = total * (reader->rank + 1) / reader->size - begin;
     select_rows(space, begin, data.shape.front());
   }
-  const std::vector<hsize_t> here(data.shape.begin(), data.shape.end());
   const auto n = static_cast<std::size_t>(H5Sget_select_npoints(space));
   const auto load = [&](hid_t type, void* values) {
     if (n == 0) return;
-    const Space memory(here.empty() ? H5Screate(H5S_SCALAR)
-                                    : H5Screate_simple(static_cast<int>(here.size()), here.data(), nullptr));
+    const Space memory(space_of(data.shape));
     check(H5Dread(d, type, memory, space, H5P_DEFAULT, values));
   };
   const Type type(H5Dget_type(d));
@@ -224,17 +224,9 @@ Dataset read_dataset(hid_t at, const char* name, const Reader* reader) {
     case H5T_INTEGER:
       load(H5T_NATIVE_INT64, data.values.emplace<std::vector<std::int64_t>>(n).data());
       break;
-    case H5T_STRING: {
-      const Type memory(utf8());
-      std::vector<char*> texts(n, nullptr);
-      load(memory, static_cast<void*>(texts.data()));
-      auto& out = data.values.emplace<std::vector<std::string>>();
-      for (char* c : texts) {
-        out.emplace_back(c ? c : "");
-        H5free_memory(c);
-      }
+    case H5T_STRING:
+      data.values = read_texts(n, load);
       break;
-    }
     default:
       throw core::Error(std::string("dataset '") + name + "' has a type that is not ours");
   }
@@ -249,14 +241,9 @@ Dataset read_dataset(hid_t at, const char* name, const Reader* reader) {
   return data;
 }
 
-void read_attributes(hid_t at, Group& group) {
-  for (const std::string& name : names_of_attributes(at))
-    std::visit([&](const auto& v) { group.set(name, v); }, read_attribute(at, name.c_str()));
-}
-
 Group read_group(hid_t at, const Reader* reader, const std::string& path = "", bool leave = false) {
   Group group;
-  read_attributes(at, group);
+  for (const std::string& name : names_of_attributes(at)) set(group, name, read_attribute(at, name.c_str()));
   if (leave) {
     leave_in_file(group, reader->file, path);
     return group;
@@ -289,12 +276,34 @@ Group read_file(const std::filesystem::path& path, const Reader* reader) {
   }
 }
 
+void moved_to(Group& group, const std::string& path, const std::filesystem::path& file) {
+  if (is_left(group)) return leave_in_file(group, file, path);
+  for (const auto& [name, inner] : group.groups()) moved_to(group.child(name), path + "/" + name, file);
+}
+
+bool leaves_any(const Group& group) {
+  return is_left(group) ||
+         std::any_of(group.groups().begin(), group.groups().end(), [](const auto& g) { return leaves_any(g.second); });
+}
+// Straight into the file: what is left elsewhere is not brought into memory.
+void write_through(const std::filesystem::path& path, const Group& root) {
+  replace_file(path, [&](const std::filesystem::path& part) {
+    try {
+      File file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+      write_group(file, root);
+      check(H5Fflush(file, H5F_SCOPE_GLOBAL));
+      file.close();
+    } catch (const core::Error& e) {
+      throw core::Error("cannot write " + path.string() + ": " + e.what());
+    }
+  });
+}
+
 }  // namespace
 
 std::string image_of(const Group& root) {
-  const List in_memory(H5Pcreate(H5P_FILE_ACCESS));
-  check(H5Pset_fapl_core(in_memory, std::size_t{1} << 20, false));
-  const File file(H5Fcreate("whirl results in memory.h5", H5F_ACC_TRUNC, H5P_DEFAULT, in_memory));
+  const List how(in_memory());
+  const File file(H5Fcreate("whirl results in memory.h5", H5F_ACC_TRUNC, H5P_DEFAULT, how));
   write_group(file, root);
   check(H5Fflush(file, H5F_SCOPE_GLOBAL));
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
@@ -313,26 +322,6 @@ void select_rows(hid_t space, std::size_t begin, std::size_t rows) {
   check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
 }
 
-namespace {
-
-bool leaves_any(const Group& group);
-
-// Straight into the file: what is left elsewhere is not brought into memory.
-void write_through(const std::filesystem::path& path, const Group& root) {
-  replace_file(path, [&](const std::filesystem::path& part) {
-    try {
-      File file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
-      write_group(file, root);
-      check(H5Fflush(file, H5F_SCOPE_GLOBAL));
-      file.close();
-    } catch (const core::Error& e) {
-      throw core::Error("cannot write " + path.string() + ": " + e.what());
-    }
-  });
-}
-
-}  // namespace
-
 void write_hdf5(const std::filesystem::path& path, const Group& root) {
   core::require(!is_shared(root), "shared datasets are written by all ranks");
   const Quiet quiet;
@@ -350,10 +339,6 @@ Group read_hdf5(const std::filesystem::path& path) {
   return read_file(path, nullptr);
 }
 
-Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm) {
-  return read_hdf5(path, comm, "");
-}
-
 Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm, const std::string& left) {
   const Reader reader{static_cast<std::size_t>(core::rank_of(comm)), static_cast<std::size_t>(core::size_of(comm)),
                       path, left};
@@ -362,8 +347,7 @@ Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm, const std::str
 
 void leave_in_file(Group& group, const std::filesystem::path& file, const std::string& place) {
   Group empty;
-  for (const auto& [name, value] : group.attributes())
-    std::visit([&, &name = name](const auto& v) { empty.set(name, v); }, value);
+  for (const auto& [name, value] : group.attributes()) set(empty, name, value);
   empty.set(left_file, file.string());
   empty.set(left_place, place);
   group = std::move(empty);
@@ -383,25 +367,12 @@ Group with_contents(const Group& group) {
     const GroupId g(H5Gopen2(file, place.c_str(), H5P_DEFAULT));
     Group out = read_group(g, nullptr);
     for (const auto& [name, value] : group.attributes())
-      if (name != left_file && name != left_place)
-        std::visit([&, &name = name](const auto& v) { out.set(name, v); }, value);
+      if (name != left_file && name != left_place) set(out, name, value);
     return out;
   } catch (const core::Error& e) {
     throw core::Error("cannot read " + place + " of " + path + ": " + e.what());
   }
 }
-
-namespace {
-void moved_to(Group& group, const std::string& path, const std::filesystem::path& file) {
-  if (is_left(group)) return leave_in_file(group, file, path);
-  for (const auto& [name, inner] : group.groups()) moved_to(group.child(name), path + "/" + name, file);
-}
-
-bool leaves_any(const Group& group) {
-  return is_left(group) ||
-         std::any_of(group.groups().begin(), group.groups().end(), [](const auto& g) { return leaves_any(g.second); });
-}
-}  // namespace
 
 void moved_to(Group& root, const std::filesystem::path& file) {
   moved_to(root, "", file);
@@ -415,27 +386,11 @@ std::string to_bytes(const Group& root) {
 
 Group from_bytes(const std::string& bytes) {
   const Quiet quiet;
-  const List in_memory(H5Pcreate(H5P_FILE_ACCESS));
-  check(H5Pset_fapl_core(in_memory, std::size_t{1} << 20, false));
+  const List how(in_memory());
   std::string image = bytes;
-  check(H5Pset_file_image(in_memory, image.data(), image.size()));
-  const File file(H5Fopen("whirl results in memory.h5", H5F_ACC_RDONLY, in_memory));
+  check(H5Pset_file_image(how, image.data(), image.size()));
+  const File file(H5Fopen("whirl results in memory.h5", H5F_ACC_RDONLY, how));
   return read_group(file, nullptr);
-}
-
-void describe_results(Group& root, const std::string& title, const std::string& version) {
-  root.set("title", title);
-  root.set("version", version);
-  root.set("program", "whirl");
-  root.set("format", 1);
-  root.set(
-      "frames",
-      "x right, y up, z along the shaft, rotation from x to y; theta from +x counter-clockwise; gravity along -y "
-      "unless the deck gives its components. "
-      "Journal positions are journal minus pedestal minus elevation, relative to the bearing centre. "
-      "K = -dF_journal/dx, C = -dF_journal/d(dx/dt). Loads are journal on bearing, positive down. Nodes are 1-based.");
-  root.set("amplitudes", "0-peak unless the name says peak_to_peak");
-  root.set("units", "attribute `unit` of each dataset; SI unless the study's range has a unit of its own");
 }
 
 }  // namespace whirl::io

@@ -309,4 +309,19 @@ std::uint64_t checksum(const Group& group, MPI_Comm comm) {
   return fnv.hash();
 }
 
+void describe_results(Group& root, const std::string& title, const std::string& version) {
+  root.set("title", title);
+  root.set("version", version);
+  root.set("program", "whirl");
+  root.set("format", 1);
+  root.set(
+      "frames",
+      "x right, y up, z along the shaft, rotation from x to y; theta from +x counter-clockwise; gravity along -y "
+      "unless the deck gives its components. "
+      "Journal positions are journal minus pedestal minus elevation, relative to the bearing centre. "
+      "K = -dF_journal/dx, C = -dF_journal/d(dx/dt). Loads are journal on bearing, positive down. Nodes are 1-based.");
+  root.set("amplitudes", "0-peak unless the name says peak_to_peak");
+  root.set("units", "attribute `unit` of each dataset; SI unless the study's range has a unit of its own");
+}
+
 }  // namespace whirl::io

@@ -22,8 +22,9 @@ void write_hdf5(const std::filesystem::path& path, const Group& root, MPI_Comm c
 /// that were shared are whole.
 [[nodiscard]] Group read_hdf5(const std::filesystem::path& path);
 /// The same on one of the ranks that read it together: of each dataset that was shared it gets as many rows as the
-/// others, whatever their number was when it was written. Does not communicate: agree on its errors.
-[[nodiscard]] Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm);
+/// others, whatever their number was when it was written. All groups in groups of the name `left` stay in the file.
+/// Does not communicate: agree on its errors.
+[[nodiscard]] Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm, const std::string& left = "");
 
 /// A group whose contents stay in a file until it is written, so that nobody has to hold the results of a thousand
 /// variants. leave_in_file() empties `group` but for its attributes, which stand beside those of the file; what stands
@@ -34,11 +35,6 @@ void leave_in_file(Group& group, const std::filesystem::path& file, const std::s
 [[nodiscard]] Group with_contents(const Group& group);
 /// From now on what `root` has left stands in `file`, where the groups stand in `root`: after that file was written.
 void moved_to(Group& root, const std::filesystem::path& file);
-/// The same as read_hdf5(path, comm), but all groups in groups of the name `left` stay in the file.
-[[nodiscard]] Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm, const std::string& left);
-
-/// Marks `root` as a results file: attributes title, version, format, and in words the frames, signs and units.
-void describe_results(Group& root, const std::string& title, const std::string& version);
 
 /// The tree as the bytes of such a file, and back: to hand it to other ranks. core::Error if the bytes are damaged.
 [[nodiscard]] std::string to_bytes(const Group& root);

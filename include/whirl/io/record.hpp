@@ -117,4 +117,7 @@ void each_shared(const Group& group, const std::function<void(const std::string&
 /// The same of a tree that the ranks of `comm` share, on all of them. Collective if is_shared(group).
 [[nodiscard]] std::uint64_t checksum(const Group& group, MPI_Comm comm);
 
+/// Marks `root` as a results file: attributes title, version, format, and in words the frames, signs and units.
+void describe_results(Group& root, const std::string& title, const std::string& version);
+
 }  // namespace whirl::io
