@@ -39,6 +39,23 @@ Crossings matched(const Stability& a, const Stability& b) {
   return c;
 }
 
+// The two values beside the border of stability, and 1 or -1 as they lie in it: the signed distance of one that stays
+// is negative. Those that all points know; none where their counts of unstable values differ.
+struct Beside {
+  std::size_t order;
+  double sign;
+};
+std::vector<Beside> beside_border(std::initializer_list<const BranchPoint*> points) {
+  const int count = (*points.begin())->stability.unstable();
+  std::vector<Beside> found;
+  for (const int k : {count - 1, count})
+    if (std::ranges::all_of(points, [&](const BranchPoint* p) {
+          return k >= 0 && p->stability.unstable() == count && static_cast<int>(p->stability.distance.size()) > k;
+        }))
+      found.push_back({static_cast<std::size_t>(k), k < count ? -1.0 : 1.0});
+  return found;
+}
+
 // Where the parabola through (-h1, f1), (0, f0), (h2, f2) has its extremum, and its value there.
 struct Extremum {
   double s = 0, value = 0;
@@ -84,87 +101,6 @@ void Follower::meet(LocatedEvent found, core::Vector u) {
     if (std::any_of(all->begin(), all->end(), same)) return;
   memory_.met.push_back(found);
   found_.push_back({{std::move(found)}, std::move(u)});
-}
-
-// False position (Illinois variant) of a test function along the arclength from the point a.
-bool Follower::search(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found,
-                      State& at) {
-  double s0 = 0, s1 = b.point.step, f0 = test(a), f1 = test(b);
-  const double dp = b.point.parameter - a.point.parameter;
-  found.sensitivity = dp != 0 ? (f1 - f0) / dp : 0;
-  found.bracket = std::abs(dp);
-  found.parameter = b.point.parameter;
-  at = copy(b);
-  double last = b.point.parameter, last_f = f1, p0 = a.point.parameter;
-  int side = 0;
-  for (int k = 0; k < 30; ++k) {
-    double s = (s0 * f1 - s1 * f0) / (f1 - f0);
-    if (k > 12) s = (s0 + s1) / 2;
-    s = rounded(std::clamp(s, std::min(s0, s1), std::max(s0, s1)));
-    State trial;
-    NewtonResult result;
-    // Where a bend is too sharp for a step, as beside a row of a table, the parameter still leads there.
-    if (!look_ahead(a, s, trial, result)) {
-      if (!between(a, b, a.point.parameter + s / b.point.step * dp, trial)) return false;
-      s = trial.point.step;
-    }
-    const double f = test(trial);
-    at = std::move(trial);
-    found.parameter = at.point.parameter;
-    const double moved = found.parameter - last, secant = f != last_f ? std::abs(f / (f - last_f) * moved) : 0.0;
-    if (f * f1 < 0) p0 = last;
-    // A search that creeps has left what the secant says; one across a jump, what its ends enclose.
-    found.bracket = std::min(std::max(std::abs(moved), secant), std::abs(found.parameter - p0));
-    // The slope near the zero, from the last two points that lie far enough apart to show one.
-    if (std::abs(moved) > 1e-4 * std::abs(dp)) found.sensitivity = (f - last_f) / moved;
-    if (f == 0 || rounded(found.bracket) <= tolerance) return true;
-    last = found.parameter;
-    last_f = f;
-    if (f * f1 < 0) {
-      s0 = s1, f0 = f1;
-      side = 0;
-    } else {
-      if (side == 1) f0 /= 2;
-      side = 1;
-    }
-    s1 = s, f1 = f;
-  }
-  return false;
-}
-
-// The event roughly, then to rounding by the callback; by false position alone where that leads elsewhere.
-void Follower::pin_down(const State& a, const State& b, const Test& test, const std::function<void(const State&)>& name,
-                        LocatedEvent& found, State& at) {
-  found.after = a.point.index;
-  if (questions_.refine) {
-    const double rough = 1e-2 * std::abs(b.point.parameter - a.point.parameter);
-    found.located = locate(a, b, test, std::max(options_.location_tolerance, rough), found, at);
-    name(at);
-    if (found.located) {
-      warm_up();
-      std::optional<Refined> refined = questions_.refine(found, at.u.get(), at.tangent.get());
-      const double h = b.point.step, s = refined ? distance(a, refined->u.get()) : 0;
-      if (refined && s > std::min(0.0, h) - 0.1 * std::abs(h) && s < std::max(0.0, h) + 0.1 * std::abs(h)) {
-        State exact;
-        exact.u = std::move(refined->u);
-        exact.point = at.point;
-        try {
-          inspect(exact, a.tangent.get());
-          at = std::move(exact);
-          found.parameter = refined->parameter;
-          found.bracket = refined->error;
-          found.critical = refined->critical;
-          found.quadratic = refined->quadratic;
-          found.refined = true;
-          return;
-        } catch (const core::NotConverged&) {
-          // the row of a's tangent makes the matrix singular here: as without refinement
-        }
-      }
-    }
-  }
-  found.located = locate(a, b, test, options_.location_tolerance, found, at);
-  name(at);
 }
 
 // A change of the slope's sign is a fold. Two of them in one step leave no such trace, but the cubic with the slopes
@@ -317,15 +253,10 @@ void Follower::zeros(const State& a, const State& b) {
 // A value that comes to the border and goes again leaves the same count at all points. Its distance over three of them
 // is a parabola; where that comes to less than half the distance of its nearest point, the branch is looked at there.
 void Follower::visits(const State& before, const State& a, const State& b, bool seen) {
-  const int count = a.point.stability.unstable();
-  if (before.point.stability.unstable() != count || b.point.stability.unstable() != count) return;
-  for (const int k : {count - 1, count}) {
-    const auto order = static_cast<std::size_t>(k);
-    const auto known = [&](const State& s) { return s.point.stability.distance.size() > order; };
-    if (k < 0 || !known(before) || !known(a) || !known(b)) continue;
-    // Signed so that staying on its side is negative.
-    const double sign = k < count ? -1 : 1;
-    const auto distance = [&](const State& s) { return sign * s.point.stability.distance[order]; };
+  for (const auto& [order, sign] : beside_border({&before.point, &a.point, &b.point})) {
+    const auto distance = [order = order, sign = sign](const State& s) {
+      return sign * s.point.stability.distance[order];
+    };
     double h1 = a.point.step, h2 = b.point.step, f1 = distance(before), f0 = distance(a), f2 = distance(b);
     for (int attempt = 0; attempt < 5; ++attempt) {
       const Extremum peak = extremum(h1, f1, f0, h2, f2);
@@ -356,14 +287,8 @@ void Follower::visits(const State& before, const State& a, const State& b, bool 
 // Logarithms of moduli are nearly straight where values grow by the same factor from point to point.
 bool Follower::kinks(const BranchPoint& first, const State& a, const State& b, const State& last) {
   const int count = a.point.stability.unstable();
-  for (const BranchPoint* p : {&first, &b.point, &last.point})
-    if (p->stability.unstable() != count) return false;
-  for (const int k : {count - 1, count}) {
-    const auto order = static_cast<std::size_t>(k);
-    const auto known = [&](const BranchPoint& p) { return p.stability.distance.size() > order; };
-    if (k < 0 || !known(first) || !known(a.point) || !known(b.point) || !known(last.point)) continue;
-    const double sign = k < count ? -1 : 1;
-    const auto height = [&](const BranchPoint& p) {
+  for (const auto& [order, sign] : beside_border({&first, &a.point, &b.point, &last.point})) {
+    const auto height = [&, order = order, sign = sign](const BranchPoint& p) {
       const double d = p.stability.distance[order];
       return sign * (questions_.cycles ? std::log(std::max(1 + d, 1e-300)) : d);
     };

@@ -1,4 +1,5 @@
-// A look at a solution: tangent, stability, monitors. What a replay log keeps of looks and locations.
+// A look at a solution: tangent, stability, monitors; and where between two points a test function of them is zero.
+// What a replay log keeps of looks and locations.
 
 #include <algorithm>
 #include <cmath>
@@ -102,6 +103,87 @@ bool Follower::locate(const State& a, const State& b, const Test& test, double t
   found.bracket = facts[2];
   found.sensitivity = facts[3];
   return facts[0] != 0;
+}
+
+// False position (Illinois variant) of a test function along the arclength from the point a.
+bool Follower::search(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found,
+                      State& at) {
+  double s0 = 0, s1 = b.point.step, f0 = test(a), f1 = test(b);
+  const double dp = b.point.parameter - a.point.parameter;
+  found.sensitivity = dp != 0 ? (f1 - f0) / dp : 0;
+  found.bracket = std::abs(dp);
+  found.parameter = b.point.parameter;
+  at = copy(b);
+  double last = b.point.parameter, last_f = f1, p0 = a.point.parameter;
+  int side = 0;
+  for (int k = 0; k < 30; ++k) {
+    double s = (s0 * f1 - s1 * f0) / (f1 - f0);
+    if (k > 12) s = (s0 + s1) / 2;
+    s = rounded(std::clamp(s, std::min(s0, s1), std::max(s0, s1)));
+    State trial;
+    NewtonResult result;
+    // Where a bend is too sharp for a step, as beside a row of a table, the parameter still leads there.
+    if (!look_ahead(a, s, trial, result)) {
+      if (!between(a, b, a.point.parameter + s / b.point.step * dp, trial)) return false;
+      s = trial.point.step;
+    }
+    const double f = test(trial);
+    at = std::move(trial);
+    found.parameter = at.point.parameter;
+    const double moved = found.parameter - last, secant = f != last_f ? std::abs(f / (f - last_f) * moved) : 0.0;
+    if (f * f1 < 0) p0 = last;
+    // A search that creeps has left what the secant says; one across a jump, what its ends enclose.
+    found.bracket = std::min(std::max(std::abs(moved), secant), std::abs(found.parameter - p0));
+    // The slope near the zero, from the last two points that lie far enough apart to show one.
+    if (std::abs(moved) > 1e-4 * std::abs(dp)) found.sensitivity = (f - last_f) / moved;
+    if (f == 0 || rounded(found.bracket) <= tolerance) return true;
+    last = found.parameter;
+    last_f = f;
+    if (f * f1 < 0) {
+      s0 = s1, f0 = f1;
+      side = 0;
+    } else {
+      if (side == 1) f0 /= 2;
+      side = 1;
+    }
+    s1 = s, f1 = f;
+  }
+  return false;
+}
+
+// The event roughly, then to rounding by the callback; by false position alone where that leads elsewhere.
+void Follower::pin_down(const State& a, const State& b, const Test& test, const std::function<void(const State&)>& name,
+                        LocatedEvent& found, State& at) {
+  found.after = a.point.index;
+  if (questions_.refine) {
+    const double rough = 1e-2 * std::abs(b.point.parameter - a.point.parameter);
+    found.located = locate(a, b, test, std::max(options_.location_tolerance, rough), found, at);
+    name(at);
+    if (found.located) {
+      warm_up();
+      std::optional<Refined> refined = questions_.refine(found, at.u.get(), at.tangent.get());
+      const double h = b.point.step, s = refined ? distance(a, refined->u.get()) : 0;
+      if (refined && s > std::min(0.0, h) - 0.1 * std::abs(h) && s < std::max(0.0, h) + 0.1 * std::abs(h)) {
+        State exact;
+        exact.u = std::move(refined->u);
+        exact.point = at.point;
+        try {
+          inspect(exact, a.tangent.get());
+          at = std::move(exact);
+          found.parameter = refined->parameter;
+          found.bracket = refined->error;
+          found.critical = refined->critical;
+          found.quadratic = refined->quadratic;
+          found.refined = true;
+          return;
+        } catch (const core::NotConverged&) {
+          // the row of a's tangent makes the matrix singular here: as without refinement
+        }
+      }
+    }
+  }
+  found.located = locate(a, b, test, options_.location_tolerance, found, at);
+  name(at);
 }
 
 void Follower::look_at(State& s, Vec along) {
