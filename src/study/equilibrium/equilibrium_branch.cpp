@@ -190,6 +190,12 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   OpenBores bores(context.machine);
   MarginSlope margins;
   SpreadPoints spread(8);  // for the searches for a contact
+  // The state x as a cycle of one point.
+  const auto at_rest = [&](double period, double parameter) {
+    const std::vector<double> whole = system->gather(x.get());
+    const auto n = static_cast<Eigen::Index>(whole.size());
+    return solve::Cycle{{0, 1}, Eigen::Map<const Eigen::VectorXd>(whole.data(), n), period, parameter};
+  };
   double arclength = 0;
   MissedModes missed;
   MeshWaves waves;
@@ -220,17 +226,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     const auto& s = point.stability;
     if (!point.between) margins.add(point.parameter, films.margin(seen.film_thickness));
     arclength += point.step;
-    if (films.exists() && !point.between) {
-      const std::vector<double> whole = system->gather(x.get());
-      spread.add({{{0, 1},
-                   Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
-                   0,
-                   point.parameter},
-                  {},
-                  0,
-                  arclength,
-                  static_cast<std::size_t>(point.index)});
-    }
+    if (films.exists() && !point.between)
+      spread.add({at_rest(0, point.parameter), {}, 0, arclength, static_cast<std::size_t>(point.index)});
     verdict.add(point.parameter, class_of(s), s.unstable());
     missed.add(s.missed);
     waves.add(point.parameter, s.mesh_waves);
@@ -274,14 +271,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     results.summary().bifurcations.push_back(b);
     if (is_followed(context, results.summary().name)) {
       problem.to_state(v, x.get());
-      const std::vector<double> whole = system->gather(x.get());
-      located.push_back({found.event,
-                         found.critical,
-                         {{0, 1},
-                          Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
-                          b.period_s,
-                          found.parameter * scale},
-                         found.sensitivity});
+      located.push_back({found.event, found.critical, at_rest(b.period_s, found.parameter * scale), found.sensitivity});
     }
   };
   callbacks.drawn = [&](Vec v) {
