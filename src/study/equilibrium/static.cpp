@@ -50,27 +50,21 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
     const auto& support = system.train().supports[k];
     std::vector<film::NodalField> fields;
     core::agree(context.comm, [&] { fields = system.film_fields(b, x.data()); });
-    const MPI_Comm sharing = shared && system.own_states(b) > 0 ? context.comm : MPI_COMM_NULL;
-    for (film::NodalField& f : fields) {
-      auto& pad = group.child("films").child(io::safe_name(names[k])).child(fmt::format("pad{}", f.pad + 1));
-      const std::string name = f.name;
-      pad.put(name, dataset_of(std::move(f), sharing));
-    }
     if (fields.empty()) continue;
-    if (sharing == MPI_COMM_NULL)
-      for (const auto& [name, of] : group.child("films").child(io::safe_name(names[k])).groups()) {
-        auto& pad = group.child("films").child(io::safe_name(names[k])).child(name);
-        if (of.has_dataset("z")) pad.label_each({io::labels_of(of.reals("z"))});
-      }
+    const MPI_Comm sharing = shared && system.own_states(b) > 0 ? context.comm : MPI_COMM_NULL;
+    auto& pads = group.child("films").child(io::safe_name(names[k]));
+    for (film::NodalField& f : fields) {
+      const std::string name = f.name;
+      pads.child(fmt::format("pad{}", f.pad + 1)).put(name, dataset_of(std::move(f), sharing));
+    }
     io::FilmPlace place;
     place.radius = support.geometry.radius;
     place.centre_y = support.elevation;
     place.centre_z = z[static_cast<std::size_t>(support.node - 1)];
-    auto& pads = group.child("films").child(io::safe_name(names[k]));
-    const auto groups = pads.groups();
-    for (const auto& entry : groups) {
-      const std::string path = "films/" + io::safe_name(names[k]) + "/" + entry.first;
-      for (auto& g : io::film_grids(pads.child(entry.first), path, names[k] + " " + entry.first, place))
+    for (const auto& [name, of] : pads.groups()) {
+      auto& pad = pads.child(name);
+      if (sharing == MPI_COMM_NULL && of.has_dataset("z")) pad.label_each({io::labels_of(of.reals("z"))});
+      for (auto& g : io::film_grids(pad, "films/" + io::safe_name(names[k]) + "/" + name, names[k] + " " + name, place))
         context.results.show(std::move(g));
     }
   }
@@ -107,8 +101,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
     const auto& support = system.train().supports[b];
     const std::string head = "bearing." + names[b] + ".";
     summary.set("load." + names[b], films[b].force[1], "N");
-    summary.set(head + "force.x", films[b].force[0], "N");
-    summary.set(head + "force.y", films[b].force[1], "N");
+    for (std::size_t d = 0; d < 2; ++d) summary.set(head + "force." + axis[d], films[b].force[d], "N");
     for (std::size_t d = 0; d < 2; ++d) summary.set(head + axis[d], journals[b].position[d], "m");
     if (support.geometry.clearance > 0) {
       for (std::size_t d = 0; d < 2; ++d)
@@ -279,19 +272,17 @@ StudyResult Static::run(Context& context) {
   }
 
   const std::vector<double> shaft = system.shaft(x.data(), 0, true), z = rotor::node_positions(rotor);
-  std::vector<double> sx, sy, slope_x, slope_y;
-  for (std::size_t k = 0; k < z.size(); ++k) {
-    sx.push_back(shaft[4 * k]);
-    sy.push_back(shaft[4 * k + 1]);
-    slope_x.push_back(shaft[4 * k + 2]);
-    slope_y.push_back(shaft[4 * k + 3]);
-  }
   auto& nodes = group.child("nodes");
   nodes.put("z", z, "m", "axial position of the shaft's nodes");
-  nodes.put("x", sx, "m", "horizontal position of the shaft");
-  nodes.put("y", sy, "m", "vertical position of the shaft, positive up (sag line)");
-  nodes.put("slope_x", slope_x, "1", "dx/dz of the shaft");
-  nodes.put("slope_y", slope_y, "1", "dy/dz of the shaft");
+  const auto put_freedom = [&](std::size_t freedom, const char* name, const char* unit, const char* description) {
+    std::vector<double> along;
+    for (std::size_t k = 0; k < z.size(); ++k) along.push_back(shaft[4 * k + freedom]);
+    nodes.put(name, along, unit, description);
+  };
+  put_freedom(0, "x", "m", "horizontal position of the shaft");
+  put_freedom(1, "y", "m", "vertical position of the shaft, positive up (sag line)");
+  put_freedom(2, "slope_x", "1", "dx/dz of the shaft");
+  put_freedom(3, "slope_y", "1", "dy/dz of the shaft");
   put_bearings(group, context.machine);
   auto& bearings = group.child("bearings");
   bearings.put("x", px, "m", "journal relative to the bearing centre");
@@ -308,6 +299,8 @@ StudyResult Static::run(Context& context) {
 
 namespace {
 
+constexpr const char* pairs[] = {"xx", "xy", "yx", "yy"};
+
 // Of films that follow the slope of the shaft the coefficients beside those of forces and displacements.
 std::vector<io::BriefTable> with_slopes(const Values& v) {
   struct Block {
@@ -316,7 +309,6 @@ std::vector<io::BriefTable> with_slopes(const Values& v) {
   constexpr Block blocks[] = {{"Forces by the slope of the journal", "", "slope_", "N", "N s"},
                               {"Moments by the displacement of the journal", "slope_", "", "N", "N s"},
                               {"Moments by the slope of the journal", "slope_", "slope_", "N m", "N m s"}};
-  constexpr const char* pairs[] = {"xx", "xy", "yx", "yy"};
   std::vector<io::BriefTable> out;
   for (const Block& block : blocks) {
     io::BriefTable table{block.caption,
@@ -368,24 +360,22 @@ io::Brief Static::brief(const StudyResult& result, std::span<const io::StudySumm
                           "K = -dF/dx, C = -dF/d(dx/dt) of the force on the journal; where they depend on the "
                           "frequency, at that of the speed"};
   for (const char* letter : {"K", "C"})
-    for (const char* pair : {"xx", "xy", "yx", "yy"})
+    for (const char* pair : pairs)
       matrices.columns.push_back({std::string(letter) + " " + pair, *letter == 'K' ? "N/m" : "N s/m"});
   bool has_gas = false;
   for (const std::string& b : v.between("load.", "")) {
     const std::string head = "bearing." + b + ".";
     const io::Quantity x = v[head + "eccentricity.x"], y = v[head + "eccentricity.y"];
     const io::Quantity gas = v[head + "mass_flow"];
-    const bool liquid =
-        std::isnan(gas.value);  // a gas film has one temperature, and its volumes depend on the pressure
+    const bool liquid = std::isnan(gas.value);  // gas has one temperature, and its volumes depend on the pressure
     has_gas = has_gas || !liquid;
     places.rows.push_back(
         {b, v["load." + b], v[head + "x"], v[head + "y"], eccentricity_of(x, y), v[head + "min_thickness"],
          v[head + "max_pressure"], liquid ? in_celsius(v[head + "max_temperature"]) : io::BriefCell(),
          liquid ? v[head + "side_flow"] : io::BriefCell(), gas, v[head + "normal_flow"], v[head + "power_loss"]});
-    auto& row = matrices.rows.emplace_back();
-    row.emplace_back(b);
+    std::vector<io::BriefCell>& row = matrices.rows.emplace_back(1, b);
     for (const char* letter : {"K.", "C."})
-      for (const char* pair : {"xx", "xy", "yx", "yy"}) row.emplace_back(v[head + letter + pair]);
+      for (const char* pair : pairs) row.emplace_back(v[head + letter + pair]);
   }
   io::BriefTable elements{"Elements that carry static load",
                           {{"element"}, {"force x", "N"}, {"force y", "N"}, {"x", "m"}, {"y", "m"}},
