@@ -9,6 +9,9 @@
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/brief.hpp"
+#include "study/linear/peak_list.hpp"
+#include "study/linear/separation.hpp"
 
 namespace whirl::study {
 namespace {
@@ -127,6 +130,22 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
       }
     });
   bars.write([&](const std::string& name, double value) { return location_of(peaks, name, value); });
+}
+
+void take_bars(const io::StudySummary& summary, const NamedPeak& peak, std::string doubt, io::PeakEntry& entry) {
+  const Values values(summary);
+  for (const PeakValue& v : peak_values())
+    if (io::Quantity q = values[peak.head + v.name]; !q.unit.empty()) entry.*v.member = std::move(q);
+  entry.verdict = margin_verdict(entry.amplification_factor, entry.separation_margin, entry.required_margin);
+  if (doubt.empty() && peak.vanishes) doubt = "on another mesh the response has no peak there";
+  const io::Quantity height = values[peak.head + prominence];
+  const auto bar = height.more.find("uncertainty");
+  if (doubt.empty() && bar != height.more.end() && !(height.value > bar->second))
+    doubt = fmt::format("it stands {:.2g} um above the response beside it, with a bar of {}", 1e6 * height.value,
+                        std::isfinite(bar->second) ? fmt::format("{:.2g} um", 1e6 * bar->second) : "unknown size");
+  if (doubt.empty()) return;
+  entry.notes.push_back("undetermined: " + doubt);
+  entry.verdict = "undetermined";
 }
 
 void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<NamedPeak>& named,

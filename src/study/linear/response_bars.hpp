@@ -48,6 +48,10 @@ using PutPeak = std::function<void(io::StudySummary& to, const std::string& head
 void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
                        std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve);
 
+/// What the summary has of a peak with its bars, into its entry, and the verdict on its margin: "undetermined" with a
+/// note where `doubt` or a bar leaves open whether there is a peak at all.
+void take_bars(const io::StudySummary& summary, const NamedPeak& peak, std::string doubt, io::PeakEntry& entry);
+
 /// Warns where the mesh of the shaft leaves much in the values of peaks or in the amplitudes of `nodes` at operating
 /// speed, of which less than `operating_rounding` [m] is but rounding.
 void warn_of_shaft_mesh(io::StudySummary& summary, const rotor::Options& rotor, const std::vector<NamedPeak>& named,

@@ -53,31 +53,6 @@ struct Listed {
   std::string unsettled;  // why its numbers are not settled; empty if they are
 };
 
-// Whether there is a peak at all; where that is open its margin decides nothing.
-void judge(const io::StudySummary& summary, Listed& peak) {
-  io::PeakEntry& entry = peak.entry;
-  entry.verdict = margin_verdict(entry.amplification_factor, entry.separation_margin, entry.required_margin);
-  std::string doubt = peak.unsettled;
-  if (doubt.empty() && peak.named.vanishes) doubt = "on another mesh the response has no peak there";
-  for (const auto& [name, q] : summary.values) {
-    if (name != peak.named.head + prominence || !q.more.contains("uncertainty")) continue;
-    const double bar = q.more.at("uncertainty");
-    if (doubt.empty() && !(q.value > bar))
-      doubt = fmt::format("it stands {:.2g} um above the response beside it, with a bar of {}", 1e6 * q.value,
-                          std::isfinite(bar) ? fmt::format("{:.2g} um", 1e6 * bar) : "unknown size");
-  }
-  if (doubt.empty()) return;
-  entry.notes.push_back("undetermined: " + doubt);
-  entry.verdict = "undetermined";
-}
-
-// What the summary has of a peak with its bars.
-void take_bars(const io::StudySummary& summary, const std::string& head, io::PeakEntry& entry) {
-  for (const auto& [name, q] : summary.values)
-    for (const PeakValue& v : peak_values())
-      if (name == head + v.name) entry.*v.member = q;
-}
-
 // Marks the speeds at which the equilibrium is unstable: there nothing settles into the linear motion.
 void put_stability(io::Group& group, io::StudySummary& summary, const std::vector<ResponseAtSpeed>& curve,
                    const StableSpeeds& stable, const std::optional<deck::Quantity>& operating,
@@ -375,9 +350,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       return out;
                     });
   for (Listed& p : peaks) {
-    take_bars(summary, p.named.head, p.entry);
-    p.named.vanishes = std::ranges::any_of(named, [&](const auto& n) { return n.head == p.named.head && n.vanishes; });
-    judge(summary, p);
+    take_bars(summary, *std::ranges::find(named, p.named.head, &NamedPeak::head), p.unsettled, p.entry);
     summary.peaks.push_back(p.entry);
   }
 
