@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -16,7 +14,7 @@
 #include <vector>
 
 #include "service_speeds.hpp"
-#include "study/bars/unresolved.hpp"
+#include "service_vibration.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/separation.hpp"
 #include "study/sense.hpp"
@@ -24,29 +22,12 @@
 namespace whirl::study {
 namespace {
 
+using doubt::rank_of, doubt::stable, doubt::undetermined, doubt::unstable, doubt::words;
 using io::Quantity;
 using io::ServiceFact;
 using io::StudySummary;
 
 constexpr double damped = std::numbers::pi / 2.5;  // log decrement of an amplification factor of 2.5 (API 684)
-
-// By rising doubt whether the machine can run; what grows for sure is beyond doubt.
-constexpr std::array words{"stable", "undamped", "undetermined", "unstable"};
-constexpr std::size_t stable = 0, undetermined = 2, unstable = 3;
-std::size_t rank_of(const std::string& word) {
-  const auto at = std::find(words.begin(), words.end(), word == "diverges" ? "unstable" : word);
-  return at == words.end() ? undetermined : static_cast<std::size_t>(at - words.begin());
-}
-
-std::map<std::string, double> bar(double error) {
-  return std::isfinite(error) && error > 0 ? std::map<std::string, double>{{"uncertainty", error}}
-                                           : std::map<std::string, double>{};
-}
-
-const Quantity* find(const StudySummary& s, const std::string& name) {
-  const auto at = std::find_if(s.values.begin(), s.values.end(), [&](const auto& v) { return v.first == name; });
-  return at == s.values.end() || !std::isfinite(at->second.value) ? nullptr : &at->second;
-}
 
 std::string joined(const std::string& a, const std::string& b) {
   return a + (a.empty() || b.empty() ? "" : ", ") + b;
@@ -105,6 +86,15 @@ private:
     const std::string name = io::safe_name(s.name);
     return results_.has_group(name) ? &results_.group(name) : nullptr;
   }
+  // The same of a study at the service speed, and of one over the speed; else null.
+  [[nodiscard]] const io::Group* at_service(const StudySummary& s) const {
+    const io::Group* group = group_of(s);
+    return group && group->has_attribute("speed") && is_service(group->real("speed")) ? group : nullptr;
+  }
+  [[nodiscard]] const io::Group* over_speed(const StudySummary& s) const {
+    const io::Group* group = group_of(s);
+    return group && group->has_attribute("parameter") && group->text("parameter") == "speed" ? group : nullptr;
+  }
   static void keep(std::optional<ServiceFact>& kept, ServiceFact fact, bool largest) {
     if (kept && (largest ? fact.value.value <= kept->value.value : fact.value.value >= kept->value.value)) return;
     kept = std::move(fact);
@@ -161,33 +151,7 @@ private:
   }
 
   void take_branch(const StudySummary& s) {
-    const io::Group* group = group_of(s);
-    if (!group || !group->has_attribute("parameter") || group->text("parameter") != "speed") return;
-    vote(take_ranges(s), s.name);
-  }
-
-  // What the modes at one computed speed say together: the worst word, and the least decrement.
-  struct ModesAt {
-    double speed = 0;
-    std::size_t worst = stable;  // among `words`
-    double decrement = io::no_value, error = io::no_value;
-  };
-  static std::vector<ModesAt> modes_by_speed(const StudySummary& s) {
-    std::map<double, ModesAt> by;
-    for (const io::ModeEntry& m : s.modes) {
-      if (m.stability == not_resolved) continue;
-      const double speed = deck::number_to_si(m.speed, m.speed_unit);
-      ModesAt& at = by[speed];
-      at.speed = speed;
-      at.worst = std::max(at.worst, rank_of(m.stability));
-      if (m.imag == 0 || !std::isfinite(m.log_decrement) || at.decrement <= m.log_decrement) continue;
-      const auto error = m.more.find("log_decrement_uncertainty");
-      at.decrement = m.log_decrement;
-      at.error = error == m.more.end() ? io::no_value : error->second;
-    }
-    std::vector<ModesAt> out;
-    for (const auto& [speed, at] : by) out.push_back(at);
-    return out;
+    if (over_speed(s)) vote(take_ranges(s), s.name);
   }
 
   // At the speed, or between the computed speeds beside it: there the limits of stability that were located decide, and
@@ -281,8 +245,8 @@ private:
   }
 
   void take_static(const StudySummary& s) {
-    const io::Group* group = group_of(s);
-    if (!group || !group->has_attribute("speed") || !is_service(group->real("speed"))) return;
+    const io::Group* group = at_service(s);
+    if (!group) return;
     if (group->has_attribute("stability")) vote(group->text("stability"), s.name);
     for (const auto& [bearing, load] : lifted_journals(s))
       keep(lifted_, {"load that points upwards", bearing, load, "the shaft lifts the journal", s.name}, false);
@@ -301,8 +265,7 @@ private:
   }
 
   void take_transfers(const StudySummary& s) {
-    const io::Group* group = group_of(s);
-    if (group && group->has_attribute("speed") && is_service(group->real("speed"))) vote(s.stability, s.name);
+    if (at_service(s)) vote(s.stability, s.name);
   }
 
   // Stable whirl without unbalance: where it exists, a disturbance can start it although the position is stable.
@@ -330,80 +293,26 @@ private:
          false);
   }
 
-  // Half of the travel of the journals, and the thinnest film, in a cycle that was asked for at this speed.
   void take_cycles(const StudySummary& s) {
-    const io::Group* group = group_of(s);
-    if (!group || !group->has_attribute("parameter") || group->text("parameter") != "speed") return;
+    const io::Group* group = over_speed(s);
+    if (!group) return;
     if (group->has_attribute("unbalance") && group->text("unbalance").empty()) take_whirl(s);
-    const double here = deck::from_si(speed_, group->text("parameter_unit"));
-    for (const auto& [name, q] : s.values) {
-      constexpr std::string_view travel = ".peak_to_peak.", film = ".min_thickness.";
-      const bool thin = name.find(film) != std::string::npos;
-      const std::size_t place = name.find(thin ? film : travel);
-      double at = 0;
-      if (!name.starts_with("at.") || place == std::string::npos || q.unit != "m" || !std::isfinite(q.value)) continue;
-      const auto [end, code] = std::from_chars(name.data() + 3, name.data() + place, at);
-      if (code != std::errc() || end != name.data() + place || std::abs(at - here) > same_speed * here) continue;
-      const std::string rest = name.substr(place + (thin ? film : travel).size());
-      const std::size_t dot = thin ? rest.size() : rest.rfind('.');
-      const std::string journal = rest.substr(0, dot);
-      std::string mark = thin ? "least over a cycle" : "cycle, half of peak to peak in " + rest.substr(dot + 1);
-      if (const Quantity* largest = find(s, name.substr(0, place) + ".multiplier.modulus")) {
-        const double over = largest->value - 1, bar_of_it = largest->bar();
-        mark += std::abs(over) <= bar_of_it ? ", whose stability is undetermined"
-                : over > 0                  ? ", which is unstable"
-                                            : "";
-      }
-      if (thin)
-        keep(film_, {"thinnest film", journal, q, mark, s.name}, false);
-      else
-        keep(vibration_, {"largest vibration", journal, {q.value / 2, "m", bar(q.bar() / 2)}, mark, s.name}, true);
-    }
+    take_facts(facts_of_cycles(s, *group, speed_));
   }
-
-  // Half of the travel of the journals in a motion in time.
   void take_motion(const StudySummary& s) {
-    const io::Group* group = group_of(s);
-    if (!group || !group->has_attribute("speed") || !is_service(group->real("speed"))) return;
-    for (const auto& [name, q] : s.values) {
-      if (!name.starts_with("peak_to_peak.") || q.unit != "m" || !std::isfinite(q.value)) continue;
-      const std::size_t dot = name.rfind('.'), head = std::string_view("peak_to_peak.").size();
-      const std::string mark =
-          fmt::format("motion in time ({}), half of peak to peak in {}",
-                      group->has_attribute("motion") ? group->text("motion") : s.status, name.substr(dot + 1));
-      keep(vibration_, {"largest vibration", name.substr(head, dot - head), {q.value / 2, "m"}, mark, s.name}, true);
-    }
+    if (const io::Group* group = at_service(s)) take_facts(facts_of_motion(s, *group));
   }
-
-  // The amplitude with which a run-up passes the speed, or ends just below it.
   void take_run_up(const StudySummary& s) {
     const io::Group* group = group_of(s);
-    if (!group || !group->has_group("run_up") || !group->has_attribute("acceleration")) return;
-    const io::Group& table = group->group("run_up");
-    const io::Dataset& speed = table.dataset("speed");
-    std::vector<double> speeds;
-    for (const double v : table.reals("speed")) speeds.push_back(deck::number_to_si(v, speed.unit));
-    if (speeds.size() < 2) return;
-    const double slack = 1.01 * std::abs(speeds[speeds.size() - 1] - speeds[speeds.size() - 2]);
-    const Quantity* grows = find(s, "operating_speed.unstable_count");
-    if (grows) vote_of(static_cast<std::int64_t>(grows->value), s.name);
-    for (const char* column : {"amplitude", "node_amplitude"}) {
-      if (!table.has_dataset(column)) continue;
-      const io::Dataset& data = table.dataset(column);
-      const std::vector<double>& all = table.reals(column);
-      const std::size_t places = data.shape.at(1);
-      for (std::size_t p = 0; p < places; ++p) {
-        const auto at = at_speed(
-            speeds, [&](std::size_t k) { return all[k * places + p]; }, speed_, slack);
-        if (!at) continue;
-        const auto in_start = at_speed(
-            speeds, [&](std::size_t k) { return table.reals("start_transient")[k]; }, speed_, slack);
-        const std::string mark =
-            fmt::format("0-peak, run-up at {:.4g} rad/s^2{}{}", group->real("acceleration"),
-                        in_start && in_start->value > 0 ? ", with the free vibration of its start" : "",
-                        grows && grows->value > 0 ? ", about an unstable equilibrium" : "");
-        keep(vibration_, {"largest vibration", data.labels.at(0).at(p), {at->value, "m"}, mark, s.name}, true);
-      }
+    if (!group || !group->has_group("run_up") || !group->has_attribute("acceleration") || s.points < 2) return;
+    if (const Quantity* grows = find(s, "operating_speed.unstable_count"))
+      vote_of(static_cast<std::int64_t>(grows->value), s.name);
+    take_facts(facts_of_run_up(s, *group, speed_));
+  }
+  void take_facts(std::vector<ServiceFact> facts) {
+    for (ServiceFact& fact : facts) {
+      const bool vibration = fact.what == "largest vibration";
+      keep(vibration ? vibration_ : film_, std::move(fact), vibration);
     }
   }
 
@@ -437,15 +346,11 @@ private:
     ServiceFact fact{"stability", {}, {}, "not known: `modes` or `equilibrium_branch` over the speed give it", {}};
     if (verdicts_.empty()) vote(beside_.first, beside_.second);
     if (!verdicts_.empty()) {
-      const auto said = [&](const std::string& word) {
-        return std::find(verdicts_.begin(), verdicts_.end(), word) != verdicts_.end();
-      };
+      const auto said = [&](const char* word) { return std::ranges::find(verdicts_, word) != verdicts_.end(); };
       const bool grows = said("unstable"), decays = said("stable") || said("undamped");
       // A count of what grows does not tell undamped from stable.
-      fact.mark = grows && decays
-                      ? "undetermined: the studies differ"
-                      : *std::max_element(verdicts_.begin(), verdicts_.end(),
-                                          [](const auto& a, const auto& b) { return rank_of(a) < rank_of(b); });
+      fact.mark =
+          grows && decays ? "undetermined: the studies differ" : *std::ranges::max_element(verdicts_, {}, rank_of);
       fact.study = fmt::format("{}", fmt::join(voters_, ", "));
     }
     service_.facts.push_back(std::move(fact));

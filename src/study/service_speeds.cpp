@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/bars/unresolved.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
@@ -54,6 +55,39 @@ std::string between_words(const Interpolated& at, const std::string& unit) {
   if (at.above - at.below <= same_speed * at.above) return {};
   return fmt::format("between {:.6g} and {:.6g} {}, which were computed", deck::from_si(at.below, unit),
                      deck::from_si(at.above, unit), unit);
+}
+
+std::map<std::string, double> bar(double error) {
+  return std::isfinite(error) && error > 0 ? std::map<std::string, double>{{"uncertainty", error}}
+                                           : std::map<std::string, double>{};
+}
+
+const io::Quantity* find(const io::StudySummary& s, const std::string& name) {
+  const auto at = std::ranges::find(s.values, name, [](const auto& v) { return v.first; });
+  return at == s.values.end() || !std::isfinite(at->second.value) ? nullptr : &at->second;
+}
+
+std::size_t doubt::rank_of(const std::string& word) {
+  const auto at = std::find(words.begin(), words.end(), word == "diverges" ? "unstable" : word);
+  return at == words.end() ? undetermined : static_cast<std::size_t>(at - words.begin());
+}
+
+std::vector<ModesAt> modes_by_speed(const io::StudySummary& s) {
+  std::map<double, ModesAt> by;
+  for (const io::ModeEntry& m : s.modes) {
+    if (m.stability == not_resolved) continue;
+    const double speed = deck::number_to_si(m.speed, m.speed_unit);
+    ModesAt& at = by[speed];
+    at.speed = speed;
+    at.worst = std::max(at.worst, doubt::rank_of(m.stability));
+    if (m.imag == 0 || !std::isfinite(m.log_decrement) || at.decrement <= m.log_decrement) continue;
+    const auto error = m.more.find("log_decrement_uncertainty");
+    at.decrement = m.log_decrement;
+    at.error = error == m.more.end() ? io::no_value : error->second;
+  }
+  std::vector<ModesAt> out;
+  for (const auto& [speed, at] : by) out.push_back(at);
+  return out;
 }
 
 std::optional<std::string> between(const std::string& name, const std::string& head, const std::string& tail) {

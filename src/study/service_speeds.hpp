@@ -1,8 +1,10 @@
 #pragma once
 // What studies found at a speed, between speeds, and where a machine becomes stable or ceases to be.
 
+#include <array>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +41,28 @@ struct Interpolated {
 
 /// "between A and B UNIT, which were computed"; empty where the speed itself was.
 [[nodiscard]] std::string between_words(const Interpolated& at, const std::string& unit);
+
+/// The bar of a quantity as it is stored; nothing of one that is not known.
+[[nodiscard]] std::map<std::string, double> bar(double error);
+/// A value of a study by its name; null if there is none or it is not finite.
+[[nodiscard]] const io::Quantity* find(const io::StudySummary& summary, const std::string& name);
+
+/// Words of stability by rising doubt whether the machine can run; what grows for sure is beyond doubt.
+namespace doubt {
+inline constexpr std::array words{"stable", "undamped", "undetermined", "unstable"};
+inline constexpr std::size_t stable = 0, undetermined = 2, unstable = 3;
+/// The place of a word among them: "diverges" is unstable, an unknown one undetermined.
+[[nodiscard]] std::size_t rank_of(const std::string& word);
+}  // namespace doubt
+
+/// What the modes at one computed speed [rad/s] say together: the worst word, and the least decrement with its bar.
+struct ModesAt {
+  double speed = 0;
+  std::size_t worst = doubt::stable;  ///< among `doubt::words`
+  double decrement = io::no_value, error = io::no_value;
+};
+/// By rising speed.
+[[nodiscard]] std::vector<ModesAt> modes_by_speed(const io::StudySummary& summary);
 
 /// What stands between `head` and `tail` in a name, "B3" of "bearing.B3.min_thickness"; nothing if the name is another.
 [[nodiscard]] std::optional<std::string> between(const std::string& name, const std::string& head,
