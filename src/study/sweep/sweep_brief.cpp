@@ -4,17 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <optional>
 #include <regex>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "study/brief.hpp"
+#include "study/sweep/value_words.hpp"
 #include "study/sweep/verdict_words.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 
@@ -24,15 +25,6 @@ namespace {
 // A table this wide fits a line of the screen, so that each has its verdicts beside its numbers.
 constexpr std::size_t widest = 96, usual_cell = 16;
 constexpr std::size_t most_columns = 24, most_told = 12, most_trends = 3;
-
-// Values that answer what was asked; all of them stand in the table of the sweep.
-bool answers(const std::string& value) {
-  static const std::regex main(
-      R"((^|.*\.)(threshold|whirl_frequency|contact|(hopf|fold|cyclic_fold|flip|neimark_sacker|branch_point)\.\d+|)"
-      R"(critical\.\d+\.speed|load\.[^.]+|min_thickness|multiplier\.modulus|peak_to_peak\.[^.]+\.[xy]|)"
-      R"(first_forward\.(frequency|log_decrement))|speed\.[0-9.]+\.(eccentricity|ratio\.1\.[KC]\.(xx|yy))|peak\.[1-3]\.(speed|semi_major|amplification_factor))");
-  return std::regex_match(value, main);
-}
 
 struct Shown {
   const io::SweepColumn* column;
@@ -47,48 +39,11 @@ struct Shown {
   }
 };
 
-// The name of a value as few words. `speed_unit`: of a number in the name that is a speed, empty if it is not known.
-std::string in_short(std::string value, const std::string& speed_unit) {
-  // Of a film by itself: the number is a speed, and 1 the frequency over it.
-  static const std::regex of_speed(R"(speed\.([0-9.]+)\.(?:ratio\.1\.)?(.*))");
-  std::string speed;
-  if (std::smatch found; std::regex_match(value, found, of_speed)) {
-    speed = speed_unit.empty() ? " at speed " + found[1].str() : fmt::format(" at {} {}", found[1].str(), speed_unit);
-    value = found[2].str();
-  }
-  const auto digit = [&](std::size_t k) {
-    return k < value.size() && std::isdigit(static_cast<unsigned char>(value[k]));
-  };
-  for (std::size_t k = 0; k < value.size(); ++k)
-    if (value[k] == '_' || (value[k] == '.' && !(k > 0 && digit(k - 1) && digit(k + 1)))) value[k] = ' ';
-  for (const auto& [words, brief] : {std::pair{"amplification factor", "AF"},
-                                     {"semi major", "0-peak"},
-                                     {"peak to peak", "p-p"},
-                                     {"first forward", "forward"},
-                                     {"min thickness", "thinnest film"},
-                                     {"eccentricity", "|e|/c"},
-                                     {"log decrement", "log dec."},
-                                     {"hopf", "Hopf"},
-                                     {"neimark sacker", "Neimark-Sacker"}})
-    if (const std::size_t at = value.find(words); at != std::string::npos)
-      value.replace(at, std::string_view(words).size(), brief);
-  if (value.starts_with("bearing ")) value.erase(0, std::string_view("bearing ").size());
-  if (value.starts_with("load ")) value = value.substr(std::string_view("load ").size()) + " load";
-  return value + speed;
-}
-
-// Words with `digits` digits of each long decimal number: "x0.9333" of "x0.933333333333".
-std::string with_digits(const std::string& words, int digits) {
-  static const std::regex decimal(R"(([0-9]+)\.[0-9]{4,}(?:e[+-]?[0-9]+)?)");
-  std::string out;
-  auto from = words.cbegin();
-  for (std::sregex_iterator at(words.begin(), words.end(), decimal), end; at != end; ++at) {
-    const int whole = static_cast<int>(at->length(1));
-    out.append(from, (*at)[0].first);
-    out += fmt::format("{:.{}g}", std::stod(at->str()), std::max(digits, whole));
-    from = (*at)[0].second;
-  }
-  return out.append(from, words.cend());
+// The first of some words, and how many more there are.
+std::string first_of(std::span<const std::string> words, std::size_t most, const char* between, const char* before) {
+  const std::size_t shown = std::min(most, words.size());
+  return fmt::format("{}{}", fmt::join(words.first(shown), between),
+                     shown < words.size() ? fmt::format("{}and {} more", before, words.size() - shown) : "");
 }
 
 class SweepBrief {
@@ -285,12 +240,8 @@ private:
       all = all && verdicts_[i].found == StabilityWord::stable;
       if (verdicts_[i].found >= StabilityWord::in_part) unstable.push_back(shown_names_[i]);
     }
-    const std::size_t shown = std::min<std::size_t>(6, unstable.size());
     if (unstable.empty()) return all ? "all are stable where their studies looked" : "";
-    std::string text =
-        fmt::format("unstable, at least in part: {}",
-                    fmt::join(unstable.begin(), unstable.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-    return shown < unstable.size() ? text + fmt::format(" and {} more", unstable.size() - shown) : text;
+    return "unstable, at least in part: " + first_of(unstable, 6, ", ", " ");
   }
 
   // "x0.8: balanced: ended at 7000 rpm: contact".
@@ -300,11 +251,7 @@ private:
       for (const io::StudySummary& study : v.studies)
         if (study.status != "completed")
           words.push_back(fmt::format("{}, {}: {}", short_name(v.name), study.name, study.status));
-    if (words.empty()) return {};
-    const std::size_t shown = std::min<std::size_t>(3, words.size());
-    return fmt::format("not completed: {}{}",
-                       fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(shown), "; "),
-                       shown < words.size() ? fmt::format("; and {} more", words.size() - shown) : "");
+    return words.empty() ? "" : "not completed: " + first_of(words, 3, "; ", "; ");
   }
 
   // Below the numbers: what is not stable, in words.
@@ -317,15 +264,14 @@ private:
       if (verdicts_[i].words != "unstable" && verdicts_[i].words != name_of(verdicts_[i].found))
         told.push_back(shown_names_[i] + ": " + verdicts_[i].words);
     }
-    std::string text;
+    std::vector<std::string> text;
     const bool peaks =
         std::ranges::any_of(chosen_, [](const Shown& c) { return c.value.find("peak.") != std::string::npos; });
-    if (marked && peaks) text = "About an unstable equilibrium peaks, margins and factors describe no real motion";
-    for (std::size_t k = 0; k < std::min(most_told, told.size()); ++k) text += (text.empty() ? "" : "; ") + told[k];
-    if (told.size() > most_told) text += fmt::format("; and {} more", told.size() - most_told);
-    if (left_out_ > 0)
-      text += fmt::format("{}{} more values stand in the table of all values", text.empty() ? "" : "; ", left_out_);
-    return text;
+    if (marked && peaks)
+      text.emplace_back("About an unstable equilibrium peaks, margins and factors describe no real motion");
+    if (!told.empty()) text.push_back(first_of(told, most_told, "; ", "; "));
+    if (left_out_ > 0) text.push_back(fmt::format("{} more values stand in the table of all values", left_out_));
+    return fmt::format("{}", fmt::join(text, "; "));
   }
 
   // What the study itself says of a row. A single study that says nothing has the word of the row.
