@@ -73,8 +73,8 @@ TEST(ThdGrowth, IsThatOfTheSolids) {
   const std::vector<double> cold = thickness_of(rows);
   ThdSolver thd(rows, setup_of(1e4, 300), cold);
   EXPECT_TRUE(thd.solve().converged);
-  const std::vector<double> bush = thd.bush()->growth(thd.bush_temperature(), 300),
-                            journal = thd.journal()->growth(thd.journal_temperature(), 300);
+  const std::vector<double> bush = thd.solid(false)->growth(thd.solid_temperature(false), 300),
+                            journal = thd.solid(true)->growth(thd.solid_temperature(true), 300);
   double most = 0;
   for (std::size_t c = 0; c < cold.size(); ++c) {
     const std::size_t row = c / 24;

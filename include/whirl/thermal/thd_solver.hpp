@@ -67,15 +67,13 @@ public:
   [[nodiscard]] std::vector<double> wall_heat(bool journal);
   /// K, of each groove that is mixed. Collective.
   [[nodiscard]] std::vector<double> mixed();
+  // Of the journal or the bush:
   /// Null where the wall is none.
-  [[nodiscard]] const Solid* bush() const;
-  [[nodiscard]] const Solid* journal() const;
-  /// K, of their cells.
-  [[nodiscard]] Vec bush_temperature() const;
-  [[nodiscard]] Vec journal_temperature() const;
-  /// K [r, n], of the film's surfaces.
-  [[nodiscard]] std::vector<double> bush_surface() const;
-  [[nodiscard]] std::vector<double> journal_surface() const;
+  [[nodiscard]] const Solid* solid(bool journal) const;
+  /// K, of its cells.
+  [[nodiscard]] Vec solid_temperature(bool journal) const;
+  /// K [r, n], of the film's surface.
+  [[nodiscard]] std::vector<double> surface(bool journal) const;
 
 private:
   struct Work;

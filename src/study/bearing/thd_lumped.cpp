@@ -18,8 +18,8 @@ void put_lumped(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& o
     const bool adiabatic = side.type == thermal::WallOptions::Type::adiabatic;
     return thermal::LumpedWall{adiabatic ? 0 : area, surface_numbers(film, surface).mean};
   };
-  const std::array<thermal::LumpedWall, 2> walls{wall(options.bush, thd.bush_surface()),
-                                                 wall(options.journal, thd.journal_surface())};
+  const std::array<thermal::LumpedWall, 2> walls{wall(options.bush, thd.surface(false)),
+                                                 wall(options.journal, thd.surface(true))};
   ThdAtSpeed::Isothermal at;
   std::vector<double> pressure;
   const auto told = [&](double temperature) {

@@ -168,8 +168,8 @@ void put_thd_fields(Context& context, ThdAtSpeed& film, const film::Geometry& ge
   group.put("thickness", by_rows(rows, {r, n}, film.thickness(), "m", "film thickness [along][around]"));
   group.put("temperature", by_rows(rows, {r, n, l}, thd.temperature(), "K",
                                    "temperature of the cells [along][around][across], from the bush to the journal"));
-  group.put("bush_wall", by_rows(rows, {r, n}, thd.bush_surface(), "K", "temperature of the bush's surface"));
-  group.put("journal_wall", by_rows(rows, {r, n}, thd.journal_surface(), "K", "temperature of the journal's surface"));
+  group.put("bush_wall", by_rows(rows, {r, n}, thd.surface(false), "K", "temperature of the bush's surface"));
+  group.put("journal_wall", by_rows(rows, {r, n}, thd.surface(true), "K", "temperature of the journal's surface"));
   std::vector<double> around(r * n), along(r * n);
   const thermal::Flow& flow = thd.flows();
   for (std::size_t c = 0; c < r * n; ++c)
@@ -197,8 +197,8 @@ void put_thd_fields(Context& context, ThdAtSpeed& film, const film::Geometry& ge
   put_heat(group, film);
   put_orifices(context.results.group(), film);
   show_film(context, film, geometry);
-  if (thd.bush()) put_solid(context, film, *thd.bush(), thd.bush_temperature(), "bush", geometry);
-  if (thd.journal()) put_solid(context, film, *thd.journal(), thd.journal_temperature(), "journal", geometry);
+  if (thd.solid(false)) put_solid(context, film, *thd.solid(false), thd.solid_temperature(false), "bush", geometry);
+  if (thd.solid(true)) put_solid(context, film, *thd.solid(true), thd.solid_temperature(true), "journal", geometry);
 }
 
 }  // namespace whirl::study

@@ -76,7 +76,7 @@ std::vector<double> thd_row(ThdAtSpeed& film, double speed) {
           t.mean,
           t.minimum,
           t.maximum,
-          surface_numbers(film, thd.bush_surface()).maximum,
+          surface_numbers(film, thd.surface(false)).maximum,
           report.inflow,
           -report.force[0],
           -report.force[1],
@@ -90,8 +90,8 @@ void put_thd_values(io::StudySummary& summary, ThdAtSpeed& film, const ThdOption
   const thermal::FlowReport report = thd.flow().report(thd.flows());
   const thermal::EnergyBudget budget = thd.budget();
   const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
-  const SurfaceNumbers at_bush = surface_numbers(film, thd.bush_surface()),
-                       at_journal = surface_numbers(film, thd.journal_surface());
+  const SurfaceNumbers at_bush = surface_numbers(film, thd.surface(false)),
+                       at_journal = surface_numbers(film, thd.surface(true));
   const ThdAtSpeed::Isothermal isothermal = film.isothermal();
   summary.set("load.x", -report.force[0], "N");
   summary.set("load.y", -report.force[1], "N");
@@ -152,8 +152,8 @@ std::vector<std::string> extremes_at_orifices(ThdAtSpeed& film) {
   add("max_pressure", thd.flow().pressure(), 1);
   add("temperature.minimum", thd.temperature(), -1);
   add("temperature.maximum", thd.temperature(), 1);
-  add("temperature.bush.maximum", thd.bush_surface(), 1);
-  add("temperature.journal.maximum", thd.journal_surface(), 1);
+  add("temperature.bush.maximum", thd.surface(false), 1);
+  add("temperature.journal.maximum", thd.surface(true), 1);
   const std::vector<double> isothermal = film.isothermal().pressure;
   std::vector<double> change = thd.flow().pressure();
   for (std::size_t k = 0; k < change.size(); ++k)
