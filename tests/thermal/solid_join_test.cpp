@@ -32,6 +32,30 @@ struct Together {
   [[nodiscard]] PetscInt size() const { return static_cast<PetscInt>(cell.size()); }
 };
 
+// Blocks of the matrix of film and solid together, -joined in each; a row of prescribed temperature knows no film.
+struct HeatCoupling {
+  HeatCoupling(const Solid& solid, PetscInt cells, const std::vector<PetscInt>& film_cell) {
+    const auto block = [&](PetscInt rows, PetscInt columns, core::Matrix& m) {
+      core::check(MatCreateAIJ(solid.comm(), rows, columns, PETSC_DETERMINE, PETSC_DETERMINE,
+                               static_cast<PetscInt>(film_cell.size()), nullptr, 0, nullptr, m.put()));
+    };
+    block(solid.count(), cells, solid_film);
+    block(cells, solid.count(), film_solid);
+    for (std::size_t c = 0; c < film_cell.size(); ++c) {
+      const PetscInt wall = solid.wall()[c];
+      const double joined = -solid.joined()[c];
+      core::check(MatSetValue(solid_film.get(), wall, film_cell[c], solid.held(wall) ? 0 : joined, INSERT_VALUES));
+      core::check(MatSetValue(film_solid.get(), film_cell[c], wall, joined, INSERT_VALUES));
+    }
+    for (Mat m : {solid_film.get(), film_solid.get()}) {
+      core::check(MatAssemblyBegin(m, MAT_FINAL_ASSEMBLY));
+      core::check(MatAssemblyEnd(m, MAT_FINAL_ASSEMBLY));
+    }
+  }
+  core::Matrix solid_film;  // W/K [cells of the solid, cells of the film]
+  core::Matrix film_solid;  // W/K [cells of the film, cells of the solid]
+};
+
 struct Found {
   core::Vector bush, journal, film;
   int iterations = 0;
@@ -41,8 +65,7 @@ struct Found {
 // [     journal   J_f ]
 // [ f_B   f_J    film ]
 Found solve_together(Together& all) {
-  HeatCoupling b = all.bush.couple(all.size(), all.cell), j = all.journal.couple(all.size(), all.cell);
-  all.bush.update(b, all.cell);
+  const HeatCoupling b(all.bush, all.size(), all.cell), j(all.journal, all.size(), all.cell);
   core::Matrix film = core::make_matrix(PETSC_COMM_WORLD, all.size(), std::vector<PetscInt>(all.cell.size(), 1));
   Found out{all.bush.temperature(300), all.journal.temperature(300),
             core::make_vector(PETSC_COMM_WORLD, all.size(), PETSC_DETERMINE), 0};

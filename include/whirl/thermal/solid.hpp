@@ -46,12 +46,6 @@ struct Heats {
 /// to 1e-10 and 530 bytes a cell; PETSc's own GAMG 17-101 iterations, or three times the memory.
 void use_multigrid(PC pc);
 
-/// Blocks of the matrix of film and solid together, -joined in each.
-struct HeatCoupling {
-  core::Matrix solid_film;  // W/K [cells of the solid, cells of the film]
-  core::Matrix film_solid;  // W/K [cells of the film, cells of the solid]
-};
-
 /// Conduction in a solid whose rows lie on the ranks that hold the film's rows; what reaches beyond the film lies on
 /// the first and on the last rank. Cells are numbered (q, i, k), k fastest, over all ranks in this order. Arrays of
 /// columns of the film have the shape [r, n]: rows of this rank, nodes around, i fastest.
@@ -93,11 +87,6 @@ public:
 
   /// W/K [r, n] from the centre of the film's cell at the wall to the wall: changes matrix(). Collective.
   void join(const std::vector<double>& film);
-  /// Blocks beside matrix() for a film of `cells` cells on this rank; film_cell [r, n] are the numbers, among all
-  /// ranks, of its cells at the wall. The film's own block has `joined` on their diagonal. Collective.
-  [[nodiscard]] HeatCoupling couple(PetscInt cells, const std::vector<PetscInt>& film_cell) const;
-  /// The same after another join(), into blocks that couple() made. Collective.
-  void update(HeatCoupling& coupling, const std::vector<PetscInt>& film_cell) const;
   /// rhs = supply + joined times film temperature, K [r, n].
   void load(const std::vector<double>& film, Vec rhs) const;
 
