@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "study/bearing/bearing_map.hpp"
+#include "study/bearing/held_film.hpp"
 #include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {
@@ -28,13 +29,8 @@ double BearingMap::memory(const system::Machine&, const LayoutOptions& /*layout*
 }
 
 void BearingMap::validate(const system::Machine& machine, const deck::Report& report) const {
-  const auto found =
-      options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
-  if (!found)
-    return report.fail("bearing",
-                       fmt::format("there is no bearing '{}'{}", options.bearing,
-                                   deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
-  if (machine.bearings.empty()) return;
+  const auto found = bearing_to_look_at(machine, options.bearing, report);
+  if (!found) return;
   const film::Facts film = film::facts(machine.bearings[*found].film);
   if (film.coefficients) report.fail(options.bearing.empty() ? "" : "bearing", "a linear film has no map");
   if (options.frequencies.empty()) report.fail("frequencies", "the list is empty");

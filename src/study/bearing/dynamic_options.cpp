@@ -5,6 +5,7 @@
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bearing/dynamic_coefficients.hpp"
+#include "study/bearing/held_film.hpp"
 #include "whirl/film/contract/options.hpp"
 #include "whirl/film/use/enforced.hpp"
 
@@ -24,12 +25,7 @@ void describe(deck::Description<DynamicCoefficientsOptions>& d) {
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.add("bearing", &O::bearing, "bearing to look at; the first of the deck if not given");
   d.add("speeds", &O::speeds, "rad/s", deck::positive, "shaft speeds, one after the other").required().alias("speed");
-  d.add("eccentricity", &O::eccentricity, deck::Check{.min = 0, .max = 1, .max_open = true},
-        "distance of the journal from the bearing centre, in clearances");
-  d.add("attitude", &O::attitude, "rad", deck::any, "direction of the journal from there, from +x counter-clockwise");
-  d.add("load", &O::load, "N", deck::any,
-        "on the journal, instead of its place: one number, positive down, or [x, y]; the journal is where the force of "
-        "the film balances it");
+  describe_place(d);
   d.add("tilt", &O::tilt, "4 x 4 coefficients: slopes dx/dz, dy/dz and their moments beside x and y");
   d.add("frequencies", &O::frequencies, deck::positive, "frequencies omega/Omega, shown in the summary");
   d.add("frequency_range", &O::frequency_range, deck::positive,
@@ -47,12 +43,7 @@ void describe(deck::Description<DynamicCoefficientsOptions>& d) {
       r.fail("amplitudes", "only enforced motions have amplitudes: add 'method: enforced' or leave them out");
     if (o.frequency_range && !((*o.frequency_range)[0] < (*o.frequency_range)[1]))
       r.fail("frequency_range", "'frequency_range' goes from the lowest to the highest frequency");
-    if (o.load.values.empty()) return;
-    for (const auto& [key, given] :
-         {std::pair{"eccentricity", o.eccentricity.has_value()}, std::pair{"attitude", o.attitude.has_value()}})
-      if (given) r.fail(key, fmt::format("the journal is where the film carries its 'load': leave '{}' out", key));
-    if (o.load.values.size() > 2) return r.fail("load", "'load' must be one number, positive down, or [x, y]");
-    if (std::ranges::all_of(o.load.values, [](double f) { return f == 0; })) r.fail("load", "'load' must not be zero");
+    check_place(o, r);
   });
 }
 
@@ -81,15 +72,10 @@ double DynamicCoefficients::memory(const system::Machine& machine, const LayoutO
 }
 
 void DynamicCoefficients::validate(const system::Machine& machine, const deck::Report& report) const {
-  const auto found =
-      options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
-  if (!found)
-    return report.fail("bearing",
-                       fmt::format("there is no bearing '{}'{}", options.bearing,
-                                   deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
+  const auto found = bearing_to_look_at(machine, options.bearing, report);
   if (options.speeds.empty()) report.fail("speeds", "the list is empty");
   if (options.frequencies.empty()) report.fail("frequencies", "the list is empty");
-  if (machine.bearings.empty()) return;
+  if (!found) return;
   const film::Options& film = machine.bearings[*found].film;
   if (film::facts(film).coefficients)
     report.fail(options.bearing.empty() ? "" : "bearing", "the coefficients of a linear film are those of its deck");

@@ -6,22 +6,21 @@
 
 namespace whirl::study {
 
-std::optional<std::size_t> film_to_look_at(const system::Machine& machine, const std::string& name,
-                                           const deck::Report& report) {
+std::optional<std::size_t> bearing_to_look_at(const system::Machine& machine, const std::string& name,
+                                              const deck::Report& report) {
   const auto found = name.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, name);
-  if (!found) {
+  if (!found)
     report.fail("bearing", fmt::format("there is no bearing '{}'{}", name,
                                        deck::did_you_mean_one_of(name, system::bearing_names(machine))));
-    return std::nullopt;
-  }
-  if (machine.bearings.empty()) return std::nullopt;
-  const system::Bearing& bearing = machine.bearings[*found];
-  const std::string key = name.empty() ? "" : "bearing";
-  if (film::facts(bearing.film).coefficients) {
-    report.fail(key, "a linear film has the coefficients that the deck gives it");
-    return std::nullopt;
-  }
-  return found;
+  return machine.bearings.empty() ? std::nullopt : found;
+}
+
+std::optional<std::size_t> film_to_look_at(const system::Machine& machine, const std::string& name,
+                                           const deck::Report& report) {
+  const auto found = bearing_to_look_at(machine, name, report);
+  if (!found || !film::facts(machine.bearings[*found].film).coefficients) return found;
+  report.fail(name.empty() ? "" : "bearing", "a linear film has the coefficients that the deck gives it");
+  return std::nullopt;
 }
 
 }  // namespace whirl::study

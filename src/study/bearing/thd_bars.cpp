@@ -9,6 +9,7 @@
 #include <set>
 
 #include "study/bars/summary_bars.hpp"
+#include "study/bearing/held_film.hpp"
 #include "study/bearing/thd_record.hpp"
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
@@ -187,7 +188,7 @@ void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options,
     if (name.starts_with("temperature.")) return left;
     if (options.load.values.empty()) return options.tolerance * std::abs(value);
     // Under a load the place is found as far as the force shows it.
-    const auto [x, y] = load_of(options);
+    const auto [x, y] = load_along(options.load);
     return load_tolerance * (name == "load.x" || name == "load.y" ? std::hypot(x, y) : std::abs(value));
   });
   if (limitless.empty()) return;

@@ -35,7 +35,4 @@ struct FilmStart {
 [[nodiscard]] SolvedFilm solve_film(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry,
                                     double speed, const FilmStart& start);
 
-/// N, [x, y] on the journal: one number of the deck acts downwards.
-[[nodiscard]] std::array<double, 2> load_of(const ThdOptions& options);
-
 }  // namespace whirl::study

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/bearing/held_film.hpp"
 #include "study/bearing/thd_at_speed.hpp"
 #include "study/bearing/thd_study.hpp"
 #include "whirl/thermal/describe.hpp"
@@ -29,12 +30,7 @@ void describe(deck::Description<ThdOptions>& d) {
         "shaft speeds, one after the other; fields are written of the last")
       .required()
       .alias("speed");
-  d.add("eccentricity", &O::eccentricity, deck::Check{.min = 0, .max = 1, .max_open = true},
-        "distance of the journal from the bearing centre, in clearances");
-  d.add("attitude", &O::attitude, "rad", deck::any, "direction of the journal from there, from +x counter-clockwise");
-  d.add("load", &O::load, "N", deck::any,
-        "on the journal, instead of its place: one number, positive down, or [x, y]; the journal is where the force of "
-        "the film balances it");
+  describe_place(d);
   d.add("cells", &O::cells, deck::in(2, 1e5), "intervals around and along the film, layers across it");
   d.add("cavitation", &O::cavitation, "what an oil film does where it would be under tension");
   d.add("turbulence", &O::turbulence, "flow resistance, shear and mixing across of a turbulent film");
@@ -58,14 +54,7 @@ void describe(deck::Description<ThdOptions>& d) {
   d.add(
       "temperatures", &O::temperatures, "K", deck::positive,
       "temperatures of a table of the properties of the fluid and of the clearance, both solids as warm as the fluid");
-  d.check([](const O& o, const deck::Report& r) {
-    if (o.load.values.empty()) return;
-    for (const auto& [key, given] :
-         {std::pair{"eccentricity", o.eccentricity.has_value()}, std::pair{"attitude", o.attitude.has_value()}})
-      if (given) r.fail(key, fmt::format("the journal is where the film carries its 'load': leave '{}' out", key));
-    if (o.load.values.size() > 2) return r.fail("load", "'load' must be one number, positive down, or [x, y]");
-    if (std::ranges::all_of(o.load.values, [](double f) { return f == 0; })) r.fail("load", "'load' must not be zero");
-  });
+  d.check(check_place<O>);
 }
 
 double ThdStudy::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
@@ -76,13 +65,8 @@ double ThdStudy::memory(const system::Machine&, const LayoutOptions& /*layout*/)
 void ThdStudy::validate(const system::Machine& machine, const deck::Report& report) const {
   using Fluid = thermal::FluidOptions;
   using Wall = thermal::WallOptions;
-  const auto found =
-      options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
-  if (!found)
-    return report.fail("bearing",
-                       fmt::format("there is no bearing '{}'{}", options.bearing,
-                                   deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
-  if (machine.bearings.empty()) return;
+  const auto found = bearing_to_look_at(machine, options.bearing, report);
+  if (!found) return;
   const system::Bearing& bearing = machine.bearings[*found];
   if (!bearing.geometry) return report.fail(options.bearing.empty() ? "" : "bearing", "the bearing has no geometry");
   const film::Geometry& g = *bearing.geometry;
