@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -150,10 +151,19 @@ std::vector<double> speeds_of(const Options& o) {
   return all;
 }
 
-/// What all kinds share: options with a `name`.
-template <class Options>
+/// A text as the argument of a template.
+template <std::size_t n>
+struct Key {
+  constexpr Key(const char (&from)[n]) { std::copy_n(from, n, text); }
+  char text[n];
+};
+
+/// What all kinds share: a key in decks, and options with a `name`.
+template <class Options, Key of_kind>
 class StudyWith : public Study {
 public:
+  static constexpr std::string_view key = of_kind.text;
+  [[nodiscard]] std::string_view kind() const override { return key; }
   using Given = Options;
   /// As the deck gives them.
   [[nodiscard]] const Options& given() const { return options; }

@@ -20,10 +20,8 @@ struct BearingMapOptions {
 };
 void describe(deck::Description<BearingMapOptions>& d);
 
-class BearingMap final : public StudyWith<BearingMapOptions> {
+class BearingMap final : public StudyWith<BearingMapOptions, "bearing_map"> {
 public:
-  static constexpr std::string_view key = "bearing_map";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

@@ -32,10 +32,8 @@ struct DynamicCoefficientsOptions {
 [[nodiscard]] std::span<const deck::Name<DynamicCoefficientsOptions::Method>> names(DynamicCoefficientsOptions::Method);
 void describe(deck::Description<DynamicCoefficientsOptions>& d);
 
-class DynamicCoefficients final : public StudyWith<DynamicCoefficientsOptions> {
+class DynamicCoefficients final : public StudyWith<DynamicCoefficientsOptions, "dynamic_coefficients"> {
 public:
-  static constexpr std::string_view key = "dynamic_coefficients";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

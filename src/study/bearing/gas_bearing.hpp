@@ -28,10 +28,8 @@ struct GasBearingOptions {
 };
 void describe(deck::Description<GasBearingOptions>& d);
 
-class GasBearing final : public StudyWith<GasBearingOptions> {
+class GasBearing final : public StudyWith<GasBearingOptions, "gas_bearing"> {
 public:
-  static constexpr std::string_view key = "gas_bearing";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

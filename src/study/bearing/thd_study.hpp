@@ -38,10 +38,8 @@ struct ThdOptions {
 [[nodiscard]] std::span<const deck::Name<ThdOptions::Cavitation>> names(ThdOptions::Cavitation);
 void describe(deck::Description<ThdOptions>& d);
 
-class ThdStudy final : public StudyWith<ThdOptions> {
+class ThdStudy final : public StudyWith<ThdOptions, "thd"> {
 public:
-  static constexpr std::string_view key = "thd";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

@@ -28,10 +28,8 @@ struct MeshLimit {
 /// kinks. Source: Roache (1994).
 [[nodiscard]] MeshLimit mesh_limit(const std::vector<double>& values, double theory = 2, bool kinks = false);
 
-class MeshConvergence final : public StudyWith<MeshConvergenceOptions> {
+class MeshConvergence final : public StudyWith<MeshConvergenceOptions, "mesh_convergence"> {
 public:
-  static constexpr std::string_view key = "mesh_convergence";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
   [[nodiscard]] std::string starts_from() const override { return options.of; }

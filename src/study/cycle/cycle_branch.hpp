@@ -56,10 +56,8 @@ struct CycleBranchOptions {
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Origin>> names(CycleBranchOptions::Origin);
 void describe(deck::Description<CycleBranchOptions>& d);
 
-class CycleBranch final : public StudyWith<CycleBranchOptions> {
+class CycleBranch final : public StudyWith<CycleBranchOptions, "cycle_branch"> {
 public:
-  static constexpr std::string_view key = "cycle_branch";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;

@@ -15,10 +15,8 @@ struct AlignmentOptions {
 };
 void describe(deck::Description<AlignmentOptions>& d);
 
-class Alignment final : public StudyWith<AlignmentOptions> {
+class Alignment final : public StudyWith<AlignmentOptions, "alignment"> {
 public:
-  static constexpr std::string_view key = "alignment";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

@@ -16,10 +16,8 @@ struct EquilibriumBranchOptions {
 };
 void describe(deck::Description<EquilibriumBranchOptions>& d);
 
-class EquilibriumBranch final : public StudyWith<EquilibriumBranchOptions> {
+class EquilibriumBranch final : public StudyWith<EquilibriumBranchOptions, "equilibrium_branch"> {
 public:
-  static constexpr std::string_view key = "equilibrium_branch";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] bool may_add(std::string_view other) const override;

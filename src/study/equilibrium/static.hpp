@@ -12,10 +12,8 @@ struct StaticOptions {
 };
 void describe(deck::Description<StaticOptions>& d);
 
-class Static final : public StudyWith<StaticOptions> {
+class Static final : public StudyWith<StaticOptions, "static"> {
 public:
-  static constexpr std::string_view key = "static";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

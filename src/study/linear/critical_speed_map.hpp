@@ -13,10 +13,8 @@ struct CriticalSpeedMapOptions {
 };
 void describe(deck::Description<CriticalSpeedMapOptions>& d);
 
-class CriticalSpeedMap final : public StudyWith<CriticalSpeedMapOptions> {
+class CriticalSpeedMap final : public StudyWith<CriticalSpeedMapOptions, "critical_speed_map"> {
 public:
-  static constexpr std::string_view key = "critical_speed_map";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;

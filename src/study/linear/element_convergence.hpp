@@ -18,10 +18,8 @@ struct ElementConvergenceOptions {
 };
 void describe(deck::Description<ElementConvergenceOptions>& d);
 
-class ElementConvergence final : public StudyWith<ElementConvergenceOptions> {
+class ElementConvergence final : public StudyWith<ElementConvergenceOptions, "element_convergence"> {
 public:
-  static constexpr std::string_view key = "element_convergence";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

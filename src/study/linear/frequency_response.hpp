@@ -65,10 +65,8 @@ struct FrequencyResponseOptions {
 [[nodiscard]] std::span<const deck::Name<FrequencyResponseOptions::Spacing>> names(FrequencyResponseOptions::Spacing);
 void describe(deck::Description<FrequencyResponseOptions>& d);
 
-class FrequencyResponse final : public StudyWith<FrequencyResponseOptions> {
+class FrequencyResponse final : public StudyWith<FrequencyResponseOptions, "frequency_response"> {
 public:
-  static constexpr std::string_view key = "frequency_response";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;

@@ -35,10 +35,8 @@ struct ModesOptions {
 [[nodiscard]] std::span<const deck::Name<ModesOptions::Motion>> names(ModesOptions::Motion);
 void describe(deck::Description<ModesOptions>& d);
 
-class Modes final : public StudyWith<ModesOptions> {
+class Modes final : public StudyWith<ModesOptions, "modes"> {
 public:
-  static constexpr std::string_view key = "modes";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   [[nodiscard]] bool needs_bearings() const override {
     return options.motion == ModesOptions::Motion::bending && options.supports == ModesOptions::Supports::films;

@@ -35,10 +35,8 @@ struct ReductionErrorsOptions {
 };
 void describe(deck::Description<ReductionErrorsOptions>& d);
 
-class ReductionErrors final : public StudyWith<ReductionErrorsOptions> {
+class ReductionErrors final : public StudyWith<ReductionErrorsOptions, "reduction_errors"> {
 public:
-  static constexpr std::string_view key = "reduction_errors";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

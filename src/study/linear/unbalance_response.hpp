@@ -19,10 +19,8 @@ struct UnbalanceResponseOptions {
 };
 void describe(deck::Description<UnbalanceResponseOptions>& d);
 
-class UnbalanceResponse final : public StudyWith<UnbalanceResponseOptions> {
+class UnbalanceResponse final : public StudyWith<UnbalanceResponseOptions, "unbalance_response"> {
 public:
-  static constexpr std::string_view key = "unbalance_response";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;

@@ -19,10 +19,8 @@ struct LocusOptions {
 };
 void describe(deck::Description<LocusOptions>& d);
 
-class Locus final : public StudyWith<LocusOptions> {
+class Locus final : public StudyWith<LocusOptions, "locus"> {
 public:
-  static constexpr std::string_view key = "locus";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
   [[nodiscard]] std::string starts_from() const override { return options.of; }

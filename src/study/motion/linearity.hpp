@@ -26,10 +26,8 @@ struct LinearityOptions {
 };
 void describe(deck::Description<LinearityOptions>& d);
 
-class Linearity final : public StudyWith<LinearityOptions> {
+class Linearity final : public StudyWith<LinearityOptions, "linearity"> {
 public:
-  static constexpr std::string_view key = "linearity";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

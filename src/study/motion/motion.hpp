@@ -46,10 +46,8 @@ struct MotionOptions {
 };
 void describe(deck::Description<MotionOptions>& d);
 
-class Motion final : public StudyWith<MotionOptions> {
+class Motion final : public StudyWith<MotionOptions, "motion"> {
 public:
-  static constexpr std::string_view key = "motion";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;

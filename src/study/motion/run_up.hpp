@@ -27,10 +27,8 @@ struct RunUpOptions {
 [[nodiscard]] double revolutions(const RunUpOptions& options);
 void describe(deck::Description<RunUpOptions>& d);
 
-class RunUp final : public StudyWith<RunUpOptions> {
+class RunUp final : public StudyWith<RunUpOptions, "run_up"> {
 public:
-  static constexpr std::string_view key = "run_up";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

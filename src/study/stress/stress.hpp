@@ -16,10 +16,8 @@ struct StressOptions {
 };
 void describe(deck::Description<StressOptions>& d);
 
-class Stress final : public StudyWith<StressOptions> {
+class Stress final : public StudyWith<StressOptions, "stress"> {
 public:
-  static constexpr std::string_view key = "stress";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;

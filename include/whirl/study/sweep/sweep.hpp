@@ -41,10 +41,8 @@ struct Variant {
   std::shared_ptr<const Deck> deck;     ///< its studies are those that the sweep repeats
 };
 
-class Sweep final : public StudyWith<SweepOptions> {
+class Sweep final : public StudyWith<SweepOptions, "sweep"> {
 public:
-  static constexpr std::string_view key = "sweep";
-  [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool takes_hysteresis() const override { return true; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
