@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "whirl/core/plan.hpp"
 #include "whirl/film/contract/options.hpp"
 #include "whirl/rotor/element.hpp"
 #include "whirl/rotor/freedom.hpp"
@@ -81,12 +82,13 @@ double memory_of_cycles(const system::Machine& machine, double intervals, double
                                         .band = width,
                                         .forces = 2 * static_cast<std::int64_t>(machine.bearings.size()),
                                         .entries = std::llround(13 * n)};
-  const bool sweeps = films > 0 && solve::cost::sweeps(counts) < solve::cost::dense_joining(counts);
-  const bool whole = radau && films == 0 && rotor && machine.rotor.type == rotor::Options::Type::shaft &&
-                     machine.rotor.reduction.type == rotor::Reduction::Type::none &&
-                     solve::cost::time_modes(counts) < solve::cost::dense_joining(counts);
-  if (films > 0) return 8 * intervals * (400 + films + (sweeps ? 0 : n * n));
-  return 8 * intervals * (400 + 30 * (stages + 1) * n + (whole ? 40 * stages * n : n * n));
+  const bool whole = radau && rotor && machine.rotor.type == rotor::Options::Type::shaft &&
+                     machine.rotor.reduction.type == rotor::Reduction::Type::none;
+  const auto way = solve::cost::cheapest(counts, films > 0, whole);
+  const double joined = way == core::plan::CycleWay::sweeps  ? 0
+                        : way == core::plan::CycleWay::modes ? 40 * stages * n
+                                                             : n * n;
+  return 8 * intervals * (400 + (films > 0 ? films : 30 * (stages + 1) * n) + joined);
 }
 
 double memory_of_spread_cycles(const system::Machine& machine, double intervals, double stages) {

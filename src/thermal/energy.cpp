@@ -7,6 +7,7 @@
 #include "thermal/energy_terms.hpp"
 #include "whirl/core/from_options.hpp"
 #include "whirl/core/index.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/core/shell.hpp"
 
 namespace whirl::thermal {
@@ -20,18 +21,12 @@ namespace {
 
 constexpr const char* prefix = "film_energy_";
 
-int sweeps_wanted() {
-  PetscInt sweeps = 0;
-  check(PetscOptionsGetInt(nullptr, prefix, "-sweeps", &sweeps, nullptr));
-  return static_cast<int>(sweeps);
-}
-
 }  // namespace
 
 Energy::Energy(const Rows& rows, const Flow& flow, const EnergyModel& model, const std::vector<double>& thickness,
                Surroundings surroundings)
     : rows_(rows), gate_(rows.comm()), terms_(std::make_unique<EnergyTerms>(rows, flow, model)) {
-  lines_ = std::make_unique<EnergyLines>(*terms_, sweeps_wanted());
+  lines_ = std::make_unique<EnergyLines>(*terms_, core::plan::energy_sweeps());
   check(DMCreateGlobalVector(rows.cells(), rise_.put()));
   residual_ = core::duplicate(rise_.get());
   update(thickness, std::move(surroundings));

@@ -3,6 +3,7 @@
 
 #include "thermal/film_flow_work.hpp"
 #include "whirl/core/direct_solver.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/thermal/solid.hpp"
 
 namespace whirl::thermal {
@@ -11,8 +12,6 @@ using core::check;
 
 namespace {
 
-// Multigrid is quicker above, 0.09 s to 7.6 s in 43 steps with 2,400 nodes on a busy machine: see docs/speed.md.
-constexpr PetscInt direct_nodes = 2000;
 // Iterations a step with factors of an earlier Jacobian; new ones cost as much as many more than these.
 constexpr int most_krylov = 4;
 
@@ -36,14 +35,14 @@ void FilmFlow::Work::split_rims(PC pc) const {
 
 void FilmFlow::Work::choose_linear_solver() {
   const bool ruptures = conserving || options.cavitation == FilmFlowOptions::Cavitation::reynolds;
-  PetscInt direct = direct_nodes;
-  check(PetscOptionsGetInt(nullptr, "film_pressure_", "-direct_nodes", &direct, nullptr));
+  const auto way = core::plan::pressure(std::int64_t{mesh.nodes_around()} * mesh.nodes_along());
   KSP ksp = nullptr;
   PC pc = nullptr;
   check(SNESGetKSP(snes.get(), &ksp));
   check(KSPGetPC(ksp, &pc));
   // What a cavity carries downstream is no elliptic equation: multigrid would not smooth it.
-  multigrid = !conserving && static_cast<PetscInt>(mesh.nodes_around()) * mesh.nodes_along() > direct;
+  multigrid = !conserving && way == core::plan::PressureWay::multigrid;
+  core::plan::note(multigrid ? way : core::plan::PressureWay::direct);
   if (!multigrid) core::make_direct(ksp);
   // The set of unknowns that an active set leaves changes from step to step.
   if (!multigrid && ruptures) return;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "whirl/core/index.hpp"
+#include "whirl/core/plan.hpp"
 
 namespace whirl::thermal {
 
@@ -135,11 +136,8 @@ std::vector<double> interpolate_state(const Rows& from, const Rows& to, const st
 std::optional<std::vector<double>> coarse_start(const Rows& rows, const ThdSetup& setup,
                                                 const std::vector<double>& thickness) {
   const Mesh& mesh = rows.mesh();
-  PetscInt most = setup.coarse_start;
-  check(PetscOptionsGetInt(nullptr, "thd_", "-coarse_start", &most, nullptr));
-  if (static_cast<double>(mesh.nodes_around()) * mesh.nodes_along() * mesh.across <= static_cast<double>(most) ||
-      most <= 0)
-    return {};
+  const double cells = static_cast<double>(mesh.nodes_around()) * mesh.nodes_along() * mesh.across;
+  if (!core::plan::starts_coarse(cells, setup.coarse_start)) return {};
   const std::optional<Mesh> other = coarser(mesh, setup.flow, core::size_of(rows.comm()));
   if (!other) return {};
   try {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "film/algebra/lines.hpp"
-#include "whirl/core/cost.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 
 namespace whirl::film {
 namespace {
@@ -80,7 +80,7 @@ RingPreconditioner::Level::Level(MPI_Comm comm, int lines, int line, Lines here,
   residual_ = Columns(line, c_.x.count);
   wrap_before_ = wrap_after_ = Block(line, 1);
   const int coarse_lines = (lines + 1) / 2;
-  gathered_ = size_ > 1 && core::cost::repeated_level(coarse_lines, line, size_) < core::cost::exchanged_level();
+  gathered_ = core::plan::level(coarse_lines, line, size_) == core::plan::LevelWay::repeated;
   Lines coarse_here{c_begin_, c_end};
   if (gathered_) {
     coarse_here = {0, coarse_lines};

@@ -53,4 +53,8 @@ double time_modes(const CycleCounts& c) {
          8 * core::cost::call;
 }
 
+core::plan::CycleWay cheapest(const CycleCounts& c, bool films, bool linear) {
+  return core::plan::cycle({dense_joining(c), sweeps(c), time_modes(c)}, films, linear);
+}
+
 }  // namespace whirl::solve::cost

@@ -9,6 +9,7 @@
 #include "solve/cycle/own_block.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 #include "whirl/solve/cycle/cost.hpp"
 
@@ -48,8 +49,7 @@ CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Blo
   if (!structure) return Way::dense;
   if (!structure->own().empty()) return Way::own_states;
   const auto modes_are_cheaper = [&] {
-    const cost::CycleCounts c = counts(options, *structure, intervals);
-    return cost::time_modes(c) < cost::dense_joining(c);
+    return cost::cheapest(counts(options, *structure, intervals), false, true) == core::plan::CycleWay::modes;
   };
   if (options.points == Points::radau &&
       (options.joining == Joining::modes || (options.joining == Joining::cheapest && modes_are_cheaper())))
@@ -74,14 +74,16 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
   run_.borders = borders_;
   run_.multipliers = options.multipliers;
   const auto sweeps_are_cheaper = [&] {
-    const cost::CycleCounts c = counts(options, *structure_, mesh.size() - 1);
-    return cost::sweeps(c) < cost::dense_joining(c);
+    return cost::cheapest(counts(options, *structure_, mesh.size() - 1), true, false) == core::plan::CycleWay::sweeps;
   };
   const bool sweeps = options.joining == Joining::sweeps ||
                       ((options.joining == Joining::cheapest || options.joining == Joining::one_by_one) &&
                        way_ == Way::own_states && sweeps_are_cheaper());
   core::require(options.joining != Joining::modes || way_ == Way::sparse,
                 "time modes want Radau points and a machine that is linear but for thin forces");
+  core::plan::note(way_ == Way::sparse ? core::plan::CycleWay::modes
+                   : sweeps            ? core::plan::CycleWay::sweeps
+                                       : core::plan::CycleWay::dense);
   composition_ = way_ == Way::sparse ? make_mode_composition()
                  : sweeps            ? make_sweep_composition()
                                      : make_dense_composition();

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "solve/newton/parts_options.hpp"
 #include "solve/newton/port_krylov.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/matrix_rows.hpp"
+#include "whirl/core/plan.hpp"
 
 namespace whirl::solve {
 
@@ -218,9 +218,9 @@ void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
   if (by_inverses) {
     const std::string failure = solve_by_inverses(rhs, x);
     if (failure.empty()) return;
-    if (system_.size() > whole_states()) {
+    if (system_.size() > core::plan::whole_states()) {
       check(VecSetInf(x));  // which ends Newton's method
-      core::agree(comm(), [&] { throw core::DomainError(failure + "; " + too_large(system_.size())); });
+      core::agree(comm(), [&] { throw core::DomainError(failure + "; " + core::plan::too_large(system_.size())); });
     }
   }
   if (!exact_) exact_ = std::make_unique<PortElimination>(system_.fields());

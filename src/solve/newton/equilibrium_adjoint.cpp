@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "solve/newton/parts_options.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
 namespace whirl::solve {
@@ -14,9 +14,10 @@ namespace whirl::solve {
 using core::check;
 
 void EquilibriumProblem::solve_transposed(Vec rhs, Vec x) {
-  if (ports_ && system_.size() > whole_states())
+  if (ports_ && system_.size() > core::plan::whole_states())
     core::agree(comm(), [&] {
-      throw core::NotConverged("approximate inverses of films have no transpose; " + too_large(system_.size()));
+      throw core::NotConverged("approximate inverses of films have no transpose; " +
+                               core::plan::too_large(system_.size()));
     });
   solve(true, rhs, x);
 }

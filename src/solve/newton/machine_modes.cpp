@@ -1,16 +1,13 @@
 #include "whirl/solve/newton/machine_modes.hpp"
 
-#include <petscsys.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
-#include <string_view>
 
 #include "solve/newton/port_elimination.hpp"
 #include "solve/newton/transfer_modes.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/spectral/count.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -19,16 +16,10 @@ namespace whirl::solve {
 namespace {
 
 bool by_transfer(const problem::System& system) {
-  std::array<char, 16> word{};
-  PetscBool given = PETSC_FALSE;
-  core::check(PetscOptionsGetString(nullptr, nullptr, "-modes_by", word.data(), word.size(), &given));
-  const std::string_view way = given ? word.data() : "automatic";
-  // A limit of memory, which transfer functions spare: at 158 104 states both ways take the same time (docs/speed.md).
-  PetscInt whole_up_to = 100000;
-  core::check(PetscOptionsGetInt(nullptr, nullptr, "-modes_whole_states", &whole_up_to, nullptr));
-  if (way != "whole" && way != "transfer" && way != "automatic")
-    throw core::InputError("-modes_by is 'whole', 'transfer' or 'automatic'");
-  return system.fields().size() > 1 && (way == "transfer" || (way == "automatic" && system.size() > whole_up_to));
+  const core::plan::ModesWay way = core::plan::modes(system.size());
+  if (system.fields().size() <= 1) return false;
+  core::plan::note(way);
+  return way == core::plan::ModesWay::transfer;
 }
 
 constexpr int most_searches = 6;

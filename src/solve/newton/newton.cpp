@@ -10,6 +10,7 @@
 #include "solve/newton/settle_step.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/from_options.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
@@ -104,10 +105,8 @@ void configure(KSP ksp, SolveContext& c, double relative, double absolute) {
 void set_fields(PC pc, ExtendedProblem& problem, Vec like) {
   PetscInt first = 0, last = 0;
   check(VecGetOwnershipRange(like, &first, &last));
-  PetscBool by_quantity = PETSC_FALSE;
-  check(PetscOptionsGetBool(nullptr, "newton_", "-split_quantities", &by_quantity, nullptr));
   std::vector<problem::Field> parts = problem.fields();
-  if (by_quantity)
+  if (core::plan::splits_quantities())
     for (problem::Field& f : parts) f.name += f.quantity.empty() ? "" : "_" + f.quantity;
   else
     parts = problem::parts_of(parts);

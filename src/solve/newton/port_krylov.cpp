@@ -6,17 +6,15 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 
 using core::check;
 
-PortKrylov::PortKrylov(const PortLayout& layout, const char* prefix) : comm_(layout.comm()), gate_(layout.comm()) {
-  PetscReal asked = 0;
-  PetscBool given = PETSC_FALSE;
-  check(PetscOptionsGetReal(nullptr, prefix, "-ksp_rtol", &asked, &given));
-  if (given) asked_ = asked;
+PortKrylov::PortKrylov(const PortLayout& layout, const char* prefix)
+    : comm_(layout.comm()), asked_(core::plan::tolerance(prefix)), gate_(layout.comm()) {
   shell_ = core::make_shell(comm_, layout.local(), gate_, [this](Vec x, Vec y) { multiply(*matrix_, x, y); });
   ksp_ = core::make_krylov(shell_.get(), gate_, {prefix, KSPFGMRES}, [this](Vec r, Vec y) { similar_->solve(r, y); });
 }

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "whirl/core/plan.hpp"
+
 namespace whirl::solve::cost {
 
 /// A cycle of n states by collocation or steps.
@@ -24,5 +26,8 @@ struct CycleCounts {
 [[nodiscard]] double sweeps(const CycleCounts& cycle);
 /// Of a machine that is linear but for its forces, by modes in time, one sparse LU a point, and the same sweeps.
 [[nodiscard]] double time_modes(const CycleCounts& cycle);
+
+/// The way to take, where `films` have states of their own, or where modes in time serve a `linear` machine.
+[[nodiscard]] core::plan::CycleWay cheapest(const CycleCounts& cycle, bool films, bool linear);
 
 }  // namespace whirl::solve::cost
