@@ -66,6 +66,7 @@ std::string headline_text(const io::StudySummary& s) {
                                            s.points == 1 ? "point" : "points", s.wall_seconds),
                                0);
   if (!s.layout.empty()) text += paragraph(s.layout, 2);
+  if (!s.ways.empty()) text += paragraph("ways: " + s.ways, 2);
   if (!s.stability.empty() && !s.brief.tells_stability) text += paragraph(s.stability + in_words(s.ranges), 2);
   for (const std::string& w : s.warnings) text += paragraph("warning: " + w, 2);
   return text;

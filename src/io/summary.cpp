@@ -234,6 +234,7 @@ Json to_json(const StudySummary& s) {
             {"modes", std::move(modes)},
             {"points", s.points}};
   if (!s.layout.empty()) j["layout"] = s.layout;
+  if (!s.ways.empty()) j["ways"] = s.ways;
   if (!s.stability.empty()) j["stability"] = s.stability;
   for (const StabilityRange& r : s.ranges)
     j["ranges"].push_back(
@@ -271,6 +272,7 @@ StudySummary study(const Json& j) {
          others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl", "stability", "whirl_rule"}),
          m.value("stability", std::string()), m.value("whirl_rule", std::string())});
   s.layout = j.value("layout", std::string());
+  s.ways = j.value("ways", std::string());
   s.stability = j.value("stability", std::string());
   for (const Json& r : j.value("ranges", Json::array()))
     s.ranges.push_back({number(r.at("from")), number(r.at("to")), r.at("unit"), r.at("stability")});

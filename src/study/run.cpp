@@ -3,6 +3,7 @@
 #include "findings.hpp"
 #include "premises.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 #include "writer.hpp"
 
@@ -48,8 +49,11 @@ bool is_pattern(const Study& study, const Deck& deck) {
 }  // namespace
 
 StudyResult result_of(Study& study, Context& context) {
+  core::plan::Record record;
   try {
-    return study.run(context);
+    StudyResult result = study.run(context);
+    result.summary.ways = record.text();
+    return result;
   } catch (const core::NotConverged& e) {
     // An answer that could not be had is a result with a reason; other studies go on.
     return context.results.finish(e.what(), false);

@@ -4,7 +4,7 @@ import json
 import h5py
 import numpy
 
-CLOCKS = ("wall_seconds", "seconds", "ranks", "layout")
+CLOCKS = ("wall_seconds", "seconds", "ranks", "layout", "ways")
 DIFFERENCES = ("bracket", "branch_curvature")  # of parameters
 
 

@@ -126,6 +126,7 @@ struct StudySummary {
   std::string name = {}, kind = {};
   std::string status = "completed";  ///< or why it ended early
   double wall_seconds = 0;
+  std::string ways = {};    ///< how equations were solved where there was a choice, one line
   std::string layout = {};  ///< how several ranks shared the work; in the file only if there were several
   std::vector<std::pair<std::string, Quantity>> values = {};  ///< dotted names, in the order they were set
   std::vector<Bifurcation> bifurcations = {};
