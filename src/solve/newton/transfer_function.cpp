@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "solve/newton/frequency_inverse.hpp"
-#include "solve/newton/parts_options.hpp"
 #include "solve/newton/real_form.hpp"
 #include "solve/newton/transfer_part.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/core/shell.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
@@ -104,7 +104,7 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   for (std::size_t i = 0; i < parts_.size(); ++i) largest = std::max(largest, states(i));
   if (auto inverse = system.make_part_inverse(); inverse && inverse->exact() != nullptr) {
     inverse_ = std::move(inverse);
-  } else if (inverse && largest > kept_states()) {
+  } else if (inverse && largest > core::plan::kept_states()) {
     iterated_ = std::make_unique<FrequencyInverse>(system, std::move(inverse));
   }
   core::IndexSet all;
@@ -194,7 +194,7 @@ TransferFunction::Transfers TransferFunction::evaluate(Complex lambda, bool slop
   try {
     if (eliminates_by_inverse()) solve_all();
   } catch (const core::NotConverged&) {
-    if (!iterated_ || system_.size() > whole_states()) throw;
+    if (!iterated_ || system_.size() > core::plan::whole_states()) throw;
     iterated_.reset();
   }
   if (!eliminates_by_inverse()) assemble();
@@ -219,7 +219,7 @@ TransferFunction::Transfers TransferFunction::evaluate(Complex lambda, bool slop
         MPI_Allreduce(MPI_IN_PLACE, m->data(), static_cast<int>(forces * columns), MPI_C_DOUBLE_COMPLEX, MPI_SUM,
                       comm());
     out.push_back(std::move(block));
-    if (states(i) > kept_states()) {
+    if (states(i) > core::plan::kept_states()) {
       p.solver.reset();
       p.real.reset();
       p.right.reset();
