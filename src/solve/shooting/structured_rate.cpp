@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "whirl/core/cost.hpp"
 #include "whirl/core/dense_lu.hpp"
+#include "whirl/core/plan.hpp"
 
 namespace whirl::solve {
 
@@ -39,7 +39,7 @@ std::unique_ptr<StructuredRate> StructuredRate::make(problem::System& system) {
   // Dense blocks may make products dearer than those of a sparse matrix, in which a state of a film has five entries.
   problem::BlockStructure& s = *system.structure();
   const Index entries = s.l1().nonZeros() + s.l0().nonZeros() + 5 * (system.size() - s.size());
-  if (!core::cost::dense_is_cheaper(core::cost::Work::product, s.size(), entries)) return nullptr;
+  if (core::plan::rates(s.size(), entries) == core::plan::StepWay::sparse) return nullptr;
   std::unique_ptr<StructuredRate> out(new StructuredRate(system));
   if (!out->find_places()) return nullptr;
   out->refresh();
