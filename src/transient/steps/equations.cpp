@@ -1,8 +1,8 @@
 #include "transient/steps/equations.hpp"
 
-#include "whirl/core/cost.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/local_part.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/core/shell.hpp"
 
 namespace whirl::transient {
@@ -25,9 +25,9 @@ core::Matrix small_matrix(problem::System& system) {
   MatInfo info;
   core::Matrix jacobian = system.make_jacobian();
   check(MatGetInfo(jacobian.get(), MAT_LOCAL, &info));
-  const auto entries = static_cast<std::int64_t>(info.nz_allocated);
-  return core::cost::dense_is_cheaper(core::cost::Work::step, system.size(), entries) ? std::move(jacobian)
-                                                                                      : core::Matrix();
+  const auto way = core::plan::step(system.size(), static_cast<std::int64_t>(info.nz_allocated));
+  core::plan::note(way);
+  return way == core::plan::StepWay::dense ? std::move(jacobian) : core::Matrix();
 }
 
 }  // namespace

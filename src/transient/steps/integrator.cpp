@@ -15,6 +15,7 @@
 #include "transient/steps/thin_steps.hpp"
 #include "transient/steps/ts_stepper.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
 #include "whirl/solve/shooting/tableau.hpp"
 
 namespace whirl::transient {
@@ -34,15 +35,8 @@ constexpr double shortest_step = 1e-13;
 
 // -PREFIXassembled takes the other path, for comparison.
 Algebra algebra_of(const IntegratorOptions& o) {
-  PetscBool assembled = o.algebra == Algebra::assembled ? PETSC_TRUE : PETSC_FALSE;
-  check(PetscOptionsGetBool(nullptr, o.prefix.c_str(), "-assembled", &assembled, nullptr));
+  const bool assembled = core::plan::assembles_steps(o.prefix, o.algebra == Algebra::assembled);
   return assembled ? Algebra::assembled : Algebra::automatic;
-}
-
-bool asks_for_petsc(const IntegratorOptions& o) {
-  PetscBool asked = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, o.prefix.c_str(), "-ts_type", &asked));
-  return asked == PETSC_TRUE;
 }
 
 }  // namespace
@@ -177,7 +171,7 @@ void Integrator::Parts::choose() {
     hold<AdamsMoultonSteps>(equations);
   else if (const auto* irk = std::get_if<Irk>(&s))
     hold<GaussSteps>(equations, irk->stages, newton);
-  else if (std::holds_alternative<Sdirk4>(s) && equations.thin() && !asks_for_petsc(options))
+  else if (std::holds_alternative<Sdirk4>(s) && equations.thin() && !core::plan::steps_by_petsc(options.prefix))
     thin = hold<ThinSteps>(equations, tableau, options.tolerance);
   else
     petsc = hold<TsStepper>(equations, options, tableau);
