@@ -37,7 +37,7 @@ public:
     MatrixXd rhs(w.rows(), w.cols());
     for (Index j = 0; j < w.rows() / n; ++j)
       rhs.middleRows(j * n, n).noalias() = -jx_.middleCols(j * n, n) * w.middleRows(j * n, n);
-    if (loaded) rhs.col(0) -= load_;
+    if (loaded) rhs.rightCols(1) -= load_;
     dk = lu_.solve(rhs);
   }
 

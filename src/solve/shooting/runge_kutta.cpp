@@ -26,7 +26,8 @@ std::unique_ptr<Stages> choose_stages(problem::System& system, const Tableau& ta
   return point ? dense_stages(*point) : sparse_stages(system, constant_rates);
 }
 
-// In all stages dF/dx (v + lift_j + H sum_l a(j,l) dk_l) + dF/d(dx/dt) dk_j (+ dF/dp) = 0.
+// In all stages dF/dx (v + lift_j + H sum_l a(j,l) dk_l) + dF/d(dx/dt) dk_j (+ dF/dp) = 0, the lifts in the first
+// column and dF/dp in the last.
 void StepDerivative::change(MatrixXd& v, const MatrixXd* lifts, bool loaded) const {
   const Tableau& t = scheme_->tableau_;
   const Index n = v.rows(), m = scheme_->together_;
@@ -51,8 +52,8 @@ RungeKutta::RungeKutta(std::unique_ptr<Stages> stages, Tableau tableau, bool by_
       shared_(core::size_of(stages_->comm()) > 1) {}
 
 double RungeKutta::largest(const MatrixXd& v) const {
-  double size = v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0;
-  if (!v.allFinite()) size = INFINITY;
+  double size = v.size() > 0 ? v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() : 0;
+  if (std::isnan(size)) size = INFINITY;  // which the maximum over ranks keeps
   if (shared_) MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, stages_->comm());
   return size;
 }
@@ -66,7 +67,7 @@ void RungeKutta::place() {
 
 void RungeKutta::find(Stage& stage) {
   const bool implicit = !group_.is_explicit();
-  const double size = largest(base_), own = group_.own.lpNorm<Eigen::Infinity>();
+  const double size = implicit ? largest(base_) : 0, own = group_.own.lpNorm<Eigen::Infinity>();
   double correction = 0, last = 0;
   for (int it = 0;; ++it) {
     place();
@@ -109,16 +110,12 @@ void RungeKutta::step(double angle, double d_angle, double length, VectorXd& x, 
     stage.keep(group_, x_, k_);
   }
   if (derivative) {
-    MatrixXd one = MatrixXd::Zero(n, 1);
-    to.change(one, nullptr, true);
-    to.d_parameter_ = one;
-    if (by_length_) {
-      // d x_j/dH = sum_l a(j,l) (k_l + H dk_l)
-      const MatrixXd lifts = slopes_ * tableau_.a.transpose();
-      one.setZero();
-      to.change(one, &lifts, false);
-      to.d_length_ = one + slopes_ * tableau_.b;
-    }
+    // d x_j/dH = sum_l a(j,l) (k_l + H dk_l)
+    if (by_length_) lifts_.noalias() = slopes_ * tableau_.a.transpose();
+    changes_.setZero(n, by_length_ ? 2 : 1);
+    to.change(changes_, by_length_ ? &lifts_ : nullptr, true);
+    to.d_parameter_ = changes_.rightCols(1);
+    if (by_length_) to.d_length_ = changes_.col(0) + slopes_ * tableau_.b;
   }
   for (Index j = 0; j < s; ++j)
     if (tableau_.b(j) != 0) x += length * tableau_.b(j) * slopes_.col(j);

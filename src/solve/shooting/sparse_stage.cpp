@@ -236,7 +236,7 @@ public:
     } else {
       dk = -(sparse_ * w);
     }
-    if (loaded) dk.col(0) -= load_;
+    if (loaded) dk.rightCols(1) -= load_;
     inverse_->solve(dk, slope_tolerance);
   }
 

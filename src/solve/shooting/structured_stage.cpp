@@ -50,7 +50,7 @@ public:
         dk.col(c).setZero();
       else
         rate_.times(a_, w.col(c).data(), dk.col(c).data());
-      if (loaded) dk.col(c) += d_parameter_;
+      if (loaded && c + 1 == w.cols()) dk.col(c) += d_parameter_;
       if (implicit_) solve_bands(dk.col(c).data());
     }
   }

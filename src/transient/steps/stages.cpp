@@ -47,7 +47,10 @@ Eigen::MatrixXd continuous_weights(const solve::Tableau& t) {
 }
 
 StageTangents::StageTangents(Equations& equations, const solve::Tableau& tableau)
-    : equations_(equations), tableau_(tableau), estimate_(tableau.b - embedded_weights(tableau)) {
+    : equations_(equations),
+      tableau_(tableau),
+      estimate_(tableau.b - embedded_weights(tableau)),
+      to_slopes_(core::DenseLu<double>(tableau.a).inverse().transpose()) {
   for (core::Vector* v : {&z_, &rhs_, &change_}) *v = equations.make_state();
   matrix_ = equations.make_matrix();
   at_rest_ = equations.make_matrix();
@@ -55,13 +58,12 @@ StageTangents::StageTangents(Equations& equations, const solve::Tableau& tableau
 }
 
 double StageTangents::propagate(double time, double length, Vec u, Stepper& stepper, const Tangents& tangents) {
-  const MatrixXd inverse = core::DenseLu<double>(tableau_.a).inverse();
   const Index s = tableau_.stages();
   const VectorXd start = get(u);
   MatrixXd values(start.size(), s), before(start.size(), tangents.count());
   for (Index i = 0; i < s; ++i) values.col(i) = get(stepper.stage(static_cast<int>(i)));
   for (int k = 0; k < tangents.count(); ++k) before.col(k) = get(tangents.column(k));
-  const MatrixXd slopes = (values.colwise() - start) * inverse.transpose() / length;
+  const MatrixXd slopes = (values.colwise() - start) * to_slopes_ / length;
   solve::carry_stages(tableau_, 1, length, before, w_, slopes_, [&](Index i, const MatrixXd& w, auto dk) {
     const double own = length * tableau_.a(i, i), at = time + length * tableau_.c(i);
     put(values.col(i), z_.get());

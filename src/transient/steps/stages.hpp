@@ -37,6 +37,7 @@ private:
   Equations& equations_;
   const solve::Tableau& tableau_;
   Eigen::VectorXd estimate_;           // weights of the error of a step
+  Eigen::MatrixXd to_slopes_;          // A^-T: h K = (Y - u_0) A^-T
   Eigen::MatrixXd w_, slopes_, ends_;  // dZ_i, dK_i of all stages, and each direction after the step
   core::Vector z_, rhs_, change_;
   core::Matrix matrix_, at_rest_;

@@ -30,7 +30,7 @@ public:
   virtual void solve(Eigen::MatrixXd& f) const = 0;
   /// Keeps the derivative at the stages that were found, for slopes().
   virtual void keep(const StageGroup& group, const Eigen::MatrixXd& x, const Eigen::MatrixXd& k) = 0;
-  /// The dk of dF/dx (w + own dk) + dF/d(dx/dt) dk = 0 for each column of w; with `loaded` + dF/dp, of one column. Both
+  /// The dk of dF/dx (w + own dk) + dF/d(dx/dt) dk = 0 for each column of w; with `loaded` + dF/dp for the last. Both
   /// are [n m x columns], stage below stage.
   virtual void slopes(const Eigen::Ref<const Eigen::MatrixXd>& w, bool loaded,
                       Eigen::Ref<Eigen::MatrixXd> dk) const = 0;
@@ -100,7 +100,8 @@ public:
 
 private:
   friend class RungeKutta;
-  /// v += H sum_j b_j dk_j; `lifts` [n x stages], if not null, are added to the first column of v in the stages.
+  /// v += H sum_j b_j dk_j; `lifts` [n x stages], if not null, are added to the first column of v in the stages, dF/dp
+  /// with `loaded` to the equations of the last.
   void change(Eigen::MatrixXd& v, const Eigen::MatrixXd* lifts, bool loaded) const;
   RungeKutta* scheme_ = nullptr;
   double length_ = 0;
@@ -140,7 +141,7 @@ private:
   StepDerivative unused_;  // of steps whose derivative nobody asks for
   StageGroup group_;
   Eigen::MatrixXd base_, x_, k_, f_, slopes_;  // work space: of a group, and K [n x stages]
-  Eigen::MatrixXd w_, dk_;                     // and of derivatives [n stages x columns]
+  Eigen::MatrixXd lifts_, changes_, w_, dk_;   // and of derivatives [n stages x columns]
 };
 
 }  // namespace whirl::solve
