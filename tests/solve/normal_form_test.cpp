@@ -125,10 +125,10 @@ TEST(NormalForm, Flip) {
   }
 }
 
-// M is known by its products only, and states are shared by the ranks.
+// M is known by its products only.
 TEST(NormalForm, ByProducts) {
-  test::SmallSystem circle(MPI_COMM_WORLD, 3, 0, speed, BentNeimarkSacker{0.5}),
-      twice(MPI_COMM_WORLD, 2, 0, speed, BentFlip{});
+  test::SmallSystem circle(PETSC_COMM_SELF, 3, 0, speed, BentNeimarkSacker{0.5}),
+      twice(PETSC_COMM_SELF, 2, 0, speed, BentFlip{});
   solve::NewtonPicardProblem first(circle, {}, solve::sdirk(4), 12, solve::uniform_mesh(4));
   EXPECT_FALSE(first.has_adjoint());
   EXPECT_EQ(first.condition(solve::Event::neimark_sacker, {0, 1}), nullptr);

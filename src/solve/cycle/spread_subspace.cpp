@@ -166,7 +166,7 @@ std::vector<std::complex<double>> SpreadCycle::multipliers() {
 
 // In the basis the motion is the eigenvector of V^T M V.
 VectorXcd SpreadCycle::multiplier_vector(std::complex<double> mu) {
-  constexpr double same = 1e-6;
+  constexpr double same = 1e-3;  // a bifurcation is located to less than that
   if (!exact_) (void)multipliers();
   MatrixXd projected = basis_.transpose() * image_;
   sum(projected);
