@@ -69,7 +69,6 @@ constexpr Prefix solvers[] = {
     {"rest_", "an equilibrium from the rest of films"},
     {"rotor_", "modes of the shaft alone"},
     {"rotor_states_", "modes of a shaft in its state-space reduction"},
-    {"shifted_", "the machine at a complex shift"},
     {"stage_", "stages of Runge-Kutta steps"},
     {"start_", "the first guess of an equilibrium"},
     {"tangent_", "linear equations at a solution of a branch"},

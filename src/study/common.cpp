@@ -15,8 +15,8 @@
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
-#include "whirl/solve/newton/transfer_function.hpp"
 
 namespace whirl::study {
 
@@ -38,7 +38,7 @@ std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, con
   if (!(omega > 0)) throw core::InputError("the frequency of stiffness and damping must be positive");
   const core::Vector at = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
   core::fill(at.get(), x);
-  solve::TransferFunction transfer(system);
+  solve::FrequencyResolvent transfer(system);
   transfer.linearise(at.get());
   const auto blocks = transfer.evaluate({0, omega}, false);
   std::size_t part = 0;

@@ -10,7 +10,7 @@
 #include "solve/newton/rational_fit.hpp"
 #include "solve/newton/transfer_modes.hpp"
 #include "support/small_system.hpp"
-#include "whirl/solve/newton/transfer_function.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 using namespace whirl;
@@ -82,16 +82,16 @@ MatrixXcd schur(const MatrixXcd& m) {
          m.topRightCorner(n_hub, rest) * m.bottomRightCorner(rest, rest).lu().solve(m.bottomLeftCorner(rest, n_hub));
 }
 
-MatrixXcd hub_matrix(solve::TransferFunction& t, Complex lambda, bool slope) {
+MatrixXcd hub_matrix(solve::FrequencyResolvent& t, Complex lambda, bool slope) {
   return MatrixXcd(t.matrix(lambda, t.evaluate(lambda, slope), slope));
 }
 
 }  // namespace
 
-TEST(TransferFunction, IsTheDenseSchurComplement) {
+TEST(FrequencyResolvent, IsTheDenseSchurComplement) {
   const Pencil p;
   Parts system(p);
-  solve::TransferFunction transfer(system);
+  solve::FrequencyResolvent transfer(system);
   const core::Vector x = system.vector(VectorXd::Zero(n));
   transfer.linearise(x.get());
   EXPECT_EQ(transfer.hub(), n_hub);
@@ -113,6 +113,33 @@ TEST(TransferFunction, IsTheDenseSchurComplement) {
     EXPECT_LT(rows.tail(n - n_hub).norm(), 1e-12 * whole.norm());
     EXPECT_LT((rows.head(n_hub) - expected * z).norm(), 1e-12 * whole.norm());
   }
+}
+
+// With loads on hub and parts, and with a border through all of them; its conjugate transpose likewise.
+TEST(FrequencyResolvent, SolvesWithBordersAndAdjoints) {
+  const Pencil p;
+  Parts system(p);
+  solve::FrequencyResolvent resolvent(system);
+  resolvent.linearise(system.vector(VectorXd::Zero(n)).get());
+  const Complex lambda(-0.3, 1.2);
+  const VectorXcd b = VectorXcd::LinSpaced(n, Complex(1, -1), Complex(-2, 0.4)),
+                  c = VectorXcd::LinSpaced(n, Complex(0.3, 2), Complex(1, -1));
+  for (const int border : {0, 1}) {
+    MatrixXcd a = MatrixXcd::Zero(n + border, n + border);
+    a.topLeftCorner(n, n) = system.scaled(p, lambda);
+    if (border > 0) {
+      a.topRightCorner(n, 1) = b;
+      a.bottomLeftCorner(1, n) = c.adjoint();
+      resolvent.factorise(lambda, b, c);
+    } else {
+      resolvent.factorise(lambda);
+    }
+    const VectorXcd r = VectorXcd::LinSpaced(n + border, Complex(2, 0.1), Complex(-1, 1));
+    EXPECT_LT((a * resolvent.solve(r) - r).norm(), 1e-12 * r.norm()) << border;
+    EXPECT_LT((a.adjoint() * resolvent.solve_adjoint(r) - r).norm(), 1e-12 * r.norm()) << border;
+  }
+  const VectorXcd rates = system.scaled(p, 1) * c - system.scaled(p, 0) * c;
+  EXPECT_LT((resolvent.rates_times(c) - rates).norm(), 1e-12 * rates.norm());
 }
 
 // Functions with three pairs of poles in common are found exactly, and so is their derivative.
@@ -148,10 +175,10 @@ TEST(RationalFit, FindsARationalFunction) {
 }
 
 // |T(lambda + d) - T(lambda) - d T'(lambda)| falls with d^2.
-TEST(TransferFunction, HasTheDerivativeOfT) {
+TEST(FrequencyResolvent, HasTheDerivativeOfT) {
   const Pencil p;
   Parts system(p);
-  solve::TransferFunction transfer(system);
+  solve::FrequencyResolvent transfer(system);
   transfer.linearise(system.vector(VectorXd::Zero(n)).get());
   const Complex lambda(0.2, 1.1);
   const MatrixXcd slope = hub_matrix(transfer, lambda, true);
@@ -168,10 +195,10 @@ TEST(TransferFunction, HasTheDerivativeOfT) {
   }
 }
 
-TEST(TransferFunction, KnowsTheEigenvaluesOfItsParts) {
+TEST(FrequencyResolvent, KnowsTheEigenvaluesOfItsParts) {
   const Pencil p;
   Parts system(p);
-  solve::TransferFunction transfer(system);
+  solve::FrequencyResolvent transfer(system);
   transfer.linearise(system.vector(VectorXd::Zero(n)).get());
   int count = 0;
   for (std::size_t i = 0; i < 2; ++i)

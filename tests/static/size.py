@@ -27,14 +27,14 @@ text = {str(p.relative_to(root)): p.read_text() for p in files}
 ALGEBRA = """
 band band_lu general_band column_chain strip_inverse lines ring_preconditioner gas_inverse lent_lu film_matrix stencil pack
 direct_inverse film_inverse
-eliminated_response frequency_inverse frequency_solver shifted_system real_form transfer_function transfer_part transfer_linearise
+frequency_hub frequency_inverse frequency_linearise frequency_part frequency_resolvent frequency_transfer
 port_elimination port_krylov port_layout port_maker port_matrix matrix_rows thin local_part stored spread_point rational_fit
 scaled_point thin_blocks linear_part thin_interval spread_interval interval own_block own_blocks own_interval own_shape small_blocks pencil
 time_modes mode_composition mode_system dense_composition sweep_composition sweep_system composition cycle_matrix cycle_layout
 film_march dominant_subspace spread_subspace spread_layout
 runge_kutta dense_stage structured_rate structured_stage sparse_stage
 bordered_monodromy nearest_eigenvalues thin_inverse equations
-entry_stream sparse_lu pivoted_lu pivoted_band dense_lu direct_solver least_squares symmetric shell
+entry_stream sparse_lu pencil_lu pivoted_lu pivoted_band dense_lu direct_solver least_squares symmetric shell
 """.split()
 WRAPPERS = {"DenseLu", "SparseLu", "PivotedLu"}
 SOLVES = {"solve", "solve_transposed", "solve_adjoint", "solve_at", "apply", "apply_at", "eliminate", "substitute", "precondition", "factorise", "compose"}

@@ -49,7 +49,7 @@ std::vector<BendingAt> bent(const system::Train& train, double speed) {
   system::RotorSystem system(PETSC_COMM_WORLD, train, speed);
   Walker walker(system);
   Vec x = walker.at(speed);
-  solve::FrequencySolver solver(system);
+  solve::FrequencyResolvent solver(system);
   const auto state = synchronous_response(system, solver, x, speed);
   return bending_of(train.rotor, system.shaft(x, 0, true), {0, -train.gravity},
                     {system.shaft(state[0].data(), 0, false), system.shaft(state[1].data(), 0, false)}, speed);

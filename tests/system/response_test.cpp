@@ -1,9 +1,10 @@
 // The linear response solves its own equations, also those that are eliminated.
 
-#include "whirl/solve/newton/frequency_solver.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -17,14 +18,14 @@ using Complex = std::complex<double>;
 
 namespace {
 
-// One part of interleaved complex entries, whole on every rank.
-Eigen::VectorXd part_of(const std::vector<double>& values, std::size_t part) {
-  core::Vector v = core::make_vector(MPI_COMM_WORLD, static_cast<PetscInt>(values.size() / 2), PETSC_DETERMINE);
-  {
-    const core::WriteArray a(v.get());
-    for (PetscInt i = 0; i < a.size(); ++i) a[i] = values[static_cast<std::size_t>(2 * i) + part];
-  }
-  return test::dense(v.get());
+// Whole on every rank.
+Eigen::VectorXcd whole(const std::vector<Complex>& here) {
+  core::Vector v = core::make_vector(MPI_COMM_WORLD, static_cast<PetscInt>(here.size()), PETSC_DETERMINE);
+  const auto gathered = [&](auto&& part) {
+    std::ranges::transform(here, core::WriteArray(v.get()).data(), part);
+    return test::dense(v.get()).cast<Complex>().eval();
+  };
+  return gathered([](Complex z) { return z.real(); }) + Complex(0, 1) * gathered([](Complex z) { return z.imag(); });
 }
 
 void solves_its_equations(bool guyan) {
@@ -32,28 +33,26 @@ void solves_its_equations(bool guyan) {
   core::Vector x = system::static_guess(s), rest = core::duplicate(x.get()), xs = core::duplicate(x.get()),
                fs = core::duplicate(x.get());
   s.scales(xs.get(), fs.get());
-  std::vector<double> right(static_cast<std::size_t>(2 * s.local_size())), amplitude;
+  std::vector<Complex> right(static_cast<std::size_t>(s.local_size()));
   {
     const core::ReadArray scale(fs.get());
     PetscInt begin = 0;
     core::check(VecGetOwnershipRange(fs.get(), &begin, nullptr));
     // Loads on all rows, the kinematic ones too.
-    for (PetscInt i = 0; i < scale.size(); ++i) {
-      right[static_cast<std::size_t>(2 * i)] = scale[i] * std::sin(1.0 + begin + i);
-      right[static_cast<std::size_t>(2 * i + 1)] = scale[i] * std::cos(0.7 * (begin + i));
-    }
+    for (PetscInt i = 0; i < scale.size(); ++i)
+      right[static_cast<std::size_t>(i)] = scale[i] * Complex(std::sin(1.0 + begin + i), std::cos(0.7 * (begin + i)));
   }
-  solve::FrequencySolver response(s);
+  solve::FrequencyResolvent response(s);
   core::Matrix jx = s.make_jacobian(), jd = s.make_jacobian();
   for (const double omega : {0.0, 150.0, 377.0}) {  // at rest the pattern of values is thinner
     s.set_parameter(200 + omega);
-    response.solve(x.get(), omega, right, amplitude);
+    response.linearise(x.get());
+    response.factorise({0, omega});
     s.jacobian(0, x.get(), rest.get(), 1, 0, jx.get());
     s.jacobian(0, x.get(), rest.get(), 0, 1, jd.get());
     const Eigen::MatrixXcd a =
         test::dense(jx.get()).cast<Complex>() + Complex(0, omega) * test::dense(jd.get()).cast<Complex>();
-    const Eigen::VectorXcd z = part_of(amplitude, 0).cast<Complex>() + Complex(0, 1) * part_of(amplitude, 1),
-                           b = part_of(right, 0).cast<Complex>() + Complex(0, 1) * part_of(right, 1);
+    const Eigen::VectorXcd z = whole(response.respond(right)), b = whole(right);
     // Rows measured against the sum of their terms.
     const Eigen::VectorXd size = a.cwiseAbs() * z.cwiseAbs() + b.cwiseAbs();
     EXPECT_LE((a * z - b).cwiseAbs().cwiseQuotient(size).maxCoeff(), 1e-9) << omega;

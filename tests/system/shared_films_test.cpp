@@ -13,7 +13,7 @@
 #include "support/train_system.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/solve/newton/transfer_function.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 using namespace whirl;
@@ -185,7 +185,7 @@ TEST(SharedFilms, AreSolvedWithoutAMatrix) {
   newton.max_iterations = 40;
   EXPECT_TRUE(solve::find_equilibrium(s, x.get(), newton).converged);
   EXPECT_EQ(s.made, 0);
-  solve::TransferFunction transfer(s);
+  solve::FrequencyResolvent transfer(s);
   transfer.linearise(x.get());
   const auto h = transfer.evaluate({0, 377}, false);
   EXPECT_EQ(s.made, 0);

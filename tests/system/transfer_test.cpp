@@ -14,8 +14,8 @@
 #include "support/train_system.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
-#include "whirl/solve/newton/transfer_function.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -124,12 +124,12 @@ void expect_those_within(system::RotorSystem& s, Vec x, const std::vector<spectr
 }  // namespace
 
 // From the motion of the journal to minus the force on it, with what a film does at constant states.
-TEST(TransferFunction, HoldsTheCoefficientsOfItsFilms) {
+TEST(FrequencyResolvent, HoldsTheCoefficientsOfItsFilms) {
   for (const auto& train : {rigid(Kind::compliant_finite, {20, 6}, 0.1), damped(), content(), mix(),
                             test::train_on_liners({12, 5}, 0.05)}) {
     system::RotorSystem s(MPI_COMM_WORLD, train, train.supports.size() > 2 ? 377 : 2 * scale);
     const core::Vector x = test::equilibrium(s);
-    solve::TransferFunction transfer(s);
+    solve::FrequencyResolvent transfer(s);
     transfer.linearise(x.get());
     const auto whole = s.gather(x.get());
     const auto direct = s.film_responses(whole.data(), film::Need::tangents);
@@ -167,15 +167,15 @@ system::Train two_finite() {
 }
 
 // At rest, at and beyond the speed of whirl, growing and decaying: by iterations as by factors, with slopes.
-TEST(TransferFunction, IteratesOnApproximateInversesOfLargeFilms) {
+TEST(FrequencyResolvent, IteratesOnApproximateInversesOfLargeFilms) {
   for (const auto& train : {two_finite(), mix_with_finite()}) {
     system::RotorSystem s(MPI_COMM_WORLD, train, 2.4 * scale);
     const core::Vector x = test::equilibrium(s);
-    solve::TransferFunction factors(s);
+    solve::FrequencyResolvent factors(s);
     factors.linearise(x.get());
     EXPECT_FALSE(factors.iterates());
     const test::WithOptions large(test::WithOptions::List{{"-parts_kept_states", "0"}});
-    solve::TransferFunction iterations(s);
+    solve::FrequencyResolvent iterations(s);
     iterations.linearise(x.get());
     std::vector<Complex> places = {{0, 0.47}, {-0.1, 3}};
     if (core::size_of(MPI_COMM_WORLD) == 1) places.insert(places.end(), {{0, 0}, {0.05, 0.5}, {0, 30}});
@@ -193,22 +193,22 @@ TEST(TransferFunction, IteratesOnApproximateInversesOfLargeFilms) {
 }
 
 // Where iterations end too early, films are factorised if the machine is small enough; else all ranks say why.
-TEST(TransferFunction, FactorisesWhereIterationsFailOrSaysWhy) {
+TEST(FrequencyResolvent, FactorisesWhereIterationsFailOrSaysWhy) {
   system::RotorSystem s(MPI_COMM_WORLD, two_finite(), 2.4 * scale);
   const core::Vector x = test::equilibrium(s);
   const Complex lambda{0, s.speed()};
-  solve::TransferFunction factors(s);
+  solve::FrequencyResolvent factors(s);
   factors.linearise(x.get());
   const auto expected = factors.evaluate(lambda, true);
   const test::WithOptions early(test::WithOptions::List{{"-parts_kept_states", "0"}, {"-frequency_ksp_max_it", "2"}});
-  solve::TransferFunction either(s);
+  solve::FrequencyResolvent either(s);
   either.linearise(x.get());
   const auto found = either.evaluate(lambda, true);
   EXPECT_FALSE(either.iterates());
   for (std::size_t b = 0; b < found.size(); ++b)
     EXPECT_LT((found[b].slope - expected[b].slope).norm(), 1e-10 * expected[b].slope.norm());
   const test::WithOptions small(test::WithOptions::List{{"-parts_whole_states", "100"}});
-  solve::TransferFunction refused(s);
+  solve::FrequencyResolvent refused(s);
   refused.linearise(x.get());
   try {
     (void)refused.evaluate(lambda, false);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "solve/bifurcation/critical_vectors.hpp"
 #include "solve/newton/local_part.hpp"
-#include "solve/newton/shifted_system.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
@@ -24,7 +24,7 @@ constexpr int sweeps = 2;  // of defect correction for the answers to omega and 
 }  // namespace
 
 VectorXcd critical_vector(problem::System& system, Vec x, double omega) {
-  ShiftedSystem shifted(system);
+  FrequencyResolvent shifted(system);
   shifted.linearise(x);
   return critical_vectors(shifted, omega).q;
 }
@@ -48,12 +48,12 @@ HarmonicCycle::HarmonicCycle(problem::System& system, Vec x, double omega, Vecto
   weights_ = make_unknown();
   check(VecSet(weights_.get(), 1.0));
   for (int k = 0; k <= harmonics; ++k) {
-    auto& block = blocks_.emplace_back(std::make_unique<ShiftedSystem>(system));
+    auto& block = blocks_.emplace_back(std::make_unique<FrequencyResolvent>(system));
     block->linearise(x);
     if (k == 1)
-      block->factorise(omega, critical_vectors(*block, omega).p, q_);
+      block->factorise({0, omega}, critical_vectors(*block, omega).p, q_);
     else
-      block->factorise(k * omega);
+      block->factorise({0, k * omega});
   }
   birth_ = VectorXd::Zero(unknowns());
   birth_.head(n()) = get(x).cwiseQuotient(state_scale_);
@@ -176,17 +176,16 @@ void HarmonicCycle::multiply(Vec v, Vec y) {
 VectorXd HarmonicCycle::balance(const VectorXd& rhs, Complex& beyond) {
   const Index m = unknowns();
   VectorXd x = VectorXd::Zero(m);
-  VectorXcd b(n()), z;
   for (int k = 0; k <= harmonics_; ++k) {
     const Index first = k == 0 ? 0 : (2 * k - 1) * n();
-    b.real() = rhs.segment(first, n());
-    b.imag().setZero();
-    if (k > 0) b.imag() = rhs.segment(first + n(), n());
-    Complex corner = k == 1 ? Complex(rhs(m - 1), rhs(m - 2)) * square_ : 0;
-    blocks_[static_cast<std::size_t>(k)]->solve(b, z, corner);
-    if (k == 1) beyond = corner;
-    x.segment(first, n()) = z.real();
-    if (k > 0) x.segment(first + n(), n()) = z.imag();
+    VectorXcd b = VectorXcd::Zero(n() + (k == 1 ? 1 : 0));
+    b.head(n()).real() = rhs.segment(first, n());
+    if (k > 0) b.head(n()).imag() = rhs.segment(first + n(), n());
+    if (k == 1) b(n()) = Complex(rhs(m - 1), rhs(m - 2)) * square_;
+    const VectorXcd z = blocks_[static_cast<std::size_t>(k)]->solve(b);
+    if (k == 1) beyond = z(n());
+    x.segment(first, n()) = z.head(n()).real();
+    if (k > 0) x.segment(first + n(), n()) = z.head(n()).imag();
   }
   return x;
 }

@@ -1,4 +1,4 @@
-#include "solve/newton/shifted_system.hpp"
+#include "solve/bifurcation/critical_vectors.hpp"
 #include "whirl/solve/bifurcation/condition.hpp"
 
 namespace whirl::solve {
@@ -21,11 +21,7 @@ public:
   VectorXd values(Vec u, const VectorXd& inner) override {
     problem_.to_state(u, x_.get());
     shifted_.linearise(x_.get());
-    shifted_.factorise(inner(0), borders_.p, borders_.q);
-    const ComplexVector none = ComplexVector::Zero(shifted_.size());
-    Complex g = 1, other = 1;
-    shifted_.solve(none, null_.q, g);
-    shifted_.solve_adjoint(none, null_.p, other);
+    const Complex g = null_vectors(shifted_, inner(0), borders_, null_);
     return VectorXd{{g.real(), g.imag()}};
   }
   // dg = -w^* (dA/dx [dx] + i domega dF/d(dx/dt)) v; the motion v exp(i omega t) moves (x, dx/dt) by (v, i omega v).
@@ -72,7 +68,7 @@ private:
   }
 
   EquilibriumProblem& problem_;
-  ShiftedSystem shifted_;
+  FrequencyResolvent shifted_;
   core::Vector x_;
   double omega_;
   CriticalVectors borders_, null_;  // c and b; v and w

@@ -2,7 +2,7 @@
 #include <functional>
 #include <limits>
 
-#include "solve/newton/shifted_system.hpp"
+#include "solve/bifurcation/critical_vectors.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
 #include "whirl/solve/newton/adjoint.hpp"
@@ -102,7 +102,7 @@ private:
 //     A(2 i omega) h20 = -B(q, q),  A(0) h11 = -B(q, conj q),
 //     2 c_1 p^* E q = -p^* [C(q, q, conj q) + 2 B(q, h11) + B(conj q, h20)],  A(s) = dF/dx + s E, E = dF/d(dx/dt)
 double hopf_coefficient(problem::System& system, Vec x, double omega, double step) {
-  ShiftedSystem shifted(system);
+  FrequencyResolvent shifted(system);
   shifted.linearise(x);
   const auto [q, p] = critical_vectors(shifted, omega);
   const Complex i(0, 1);
@@ -112,12 +112,10 @@ double hopf_coefficient(problem::System& system, Vec x, double omega, double ste
   const StateAndRate<Complex> forward = with_rate(q, i * omega), backward = with_rate(q.conjugate(), -i * omega);
   Derivatives f(system, x, step, q.cwiseAbs().maxCoeff());
   const ComplexVector qq = -f.second(forward, forward), qc = -f.second(forward, backward);
-  ComplexVector h20, h11;
-  Complex unused = 0;
-  shifted.factorise(2 * omega);
-  shifted.solve(qq, h20, unused);
+  shifted.factorise({0, 2 * omega});
+  const ComplexVector h20 = shifted.solve(qq);
   shifted.factorise(0);
-  shifted.solve(qc, h11, unused);
+  const ComplexVector h11 = shifted.solve(qc);
   const ComplexVector mean = f.second(forward, with_rate(h11, 0)),
                       twice = f.second(backward, with_rate(h20, 2.0 * i * omega));
   const StateAndRate<double> r = part(forward, false), s = part(forward, true);

@@ -10,7 +10,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/least_squares.hpp"
-#include "whirl/solve/newton/transfer_function.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -45,7 +45,7 @@ spectral::Mode mode_of(Complex lambda, double rounding, std::vector<Complex> sta
 
 TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptions& options) {
   core::require(options.frequency > 0 && options.decay > 0, "a region for eigenvalues");
-  TransferFunction machine(system);
+  FrequencyResolvent machine(system);
   machine.linearise(x);
   const Ellipse ellipse(options);
   std::vector<double> scale;
@@ -77,7 +77,7 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
   struct Order {
     double real = 0, imag = 0, ahead_real = 0, ahead_imag = 0, slopes = 0, shape = 0;
   } order;
-  TransferFunction::Transfers h;
+  FrequencyResolvent::Transfers h;
   VectorXcd motion(machine.hub());
   std::vector<Complex> state;
   const auto part = [&] {

@@ -8,7 +8,7 @@
 namespace whirl::solve {
 
 using Complex = std::complex<double>;
-using Sparse = TransferFunction::Sparse;
+using Sparse = FrequencyResolvent::Sparse;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
@@ -36,14 +36,14 @@ VectorXcd TransferSearch::joined(const Transfers& h) const {
   return out;
 }
 
-TransferFunction::Transfers TransferSearch::split(const VectorXcd& values, bool slope) const {
+FrequencyResolvent::Transfers TransferSearch::split(const VectorXcd& values, bool slope) const {
   Transfers out;
   Index at = 0;
   for (const auto& p : machine_.ports()) {
     const auto rows = static_cast<Index>(p.forces.size()), columns = static_cast<Index>(p.seen.size());
     MatrixXcd h = values.segment(at, rows * columns).reshaped(rows, columns);
     at += rows * columns;
-    out.push_back(slope ? TransferFunction::Block{{}, std::move(h)} : TransferFunction::Block{std::move(h), {}});
+    out.push_back(slope ? FrequencyResolvent::Block{{}, std::move(h)} : FrequencyResolvent::Block{std::move(h), {}});
   }
   return out;
 }

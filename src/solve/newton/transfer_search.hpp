@@ -12,7 +12,7 @@
 
 #include "solve/newton/rational_fit.hpp"
 #include "solve/newton/transfer_modes.hpp"
-#include "whirl/solve/newton/transfer_function.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 
 namespace whirl::solve {
 
@@ -58,9 +58,9 @@ struct Root {
 class TransferSearch {
 public:
   using Complex = std::complex<double>;
-  using Transfers = TransferFunction::Transfers;
+  using Transfers = FrequencyResolvent::Transfers;
   using Solve = std::function<Transfers(Complex, bool slopes)>;
-  TransferSearch(const TransferFunction& machine, const TransferOptions& options, Solve solve)
+  TransferSearch(const FrequencyResolvent& machine, const TransferOptions& options, Solve solve)
       : machine_(machine), options_(options), ellipse_(options), solve_(std::move(solve)) {}
 
   /// Samples H until the fit foretells it; returns how well it did.
@@ -79,19 +79,19 @@ public:
   [[nodiscard]] std::optional<Complex> refine(Root& root);
 
 private:
-  [[nodiscard]] TransferFunction::Sparse fitted(Complex lambda, bool slope) const {
+  [[nodiscard]] FrequencyResolvent::Sparse fitted(Complex lambda, bool slope) const {
     return machine_.matrix(lambda, split(slope ? fit_->slope(lambda) : fit_->value(lambda), slope), slope);
   }
   [[nodiscard]] Eigen::VectorXcd joined(const Transfers& h) const;
   [[nodiscard]] Transfers split(const Eigen::VectorXcd& values, bool slope) const;
   /// One step of Newton's method for (lambda, z) with z scaled by its own direction.
-  [[nodiscard]] static std::optional<Complex> step(const TransferFunction::Sparse& t,
-                                                   const TransferFunction::Sparse& slope, Eigen::VectorXcd& z);
-  [[nodiscard]] static double rounding(const TransferFunction::Sparse& t, const TransferFunction::Sparse& slope,
+  [[nodiscard]] static std::optional<Complex> step(const FrequencyResolvent::Sparse& t,
+                                                   const FrequencyResolvent::Sparse& slope, Eigen::VectorXcd& z);
+  [[nodiscard]] static double rounding(const FrequencyResolvent::Sparse& t, const FrequencyResolvent::Sparse& slope,
                                        const Eigen::VectorXcd& z, double magnitude);
   [[nodiscard]] std::optional<double> turn(double from, double angle_from, double to, double angle_to, int depth) const;
 
-  const TransferFunction& machine_;
+  const FrequencyResolvent& machine_;
   const TransferOptions& options_;
   Ellipse ellipse_;
   Solve solve_;

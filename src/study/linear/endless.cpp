@@ -12,7 +12,7 @@
 #include "study/growth.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/rounded.hpp"
-#include "whirl/solve/newton/frequency_solver.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 
 namespace whirl::study {
 

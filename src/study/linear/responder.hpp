@@ -8,7 +8,7 @@
 #include "study/common.hpp"
 #include "study/linear/response_record.hpp"
 #include "study/linear/unbalance_response.hpp"
-#include "whirl/solve/newton/frequency_solver.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 
 namespace whirl::study {
 
@@ -39,7 +39,7 @@ public:
 private:
   system::RotorSystem system_;
   Walker walker_;
-  solve::FrequencySolver solver_;
+  solve::FrequencyResolvent solver_;
   std::vector<int> nodes_;
 };
 

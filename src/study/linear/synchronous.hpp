@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "whirl/solve/newton/frequency_solver.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {
@@ -15,7 +15,7 @@ namespace whirl::study {
 /// each whole on every rank [size()]. `solver` is one of this system. Collective; throws core::NotConverged at an
 /// undamped resonance.
 [[nodiscard]] std::array<std::vector<double>, 2> synchronous_response(system::RotorSystem& system,
-                                                                      solve::FrequencySolver& solver, Vec x,
+                                                                      solve::FrequencyResolvent& solver, Vec x,
                                                                       double speed);
 
 }  // namespace whirl::study

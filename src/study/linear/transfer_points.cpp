@@ -89,10 +89,10 @@ TransferMatrix::TransferMatrix(system::RotorSystem& system, const std::vector<Tr
   check(VecGetOwnershipRange(rows.get(), &begin, nullptr));
   for (const TransferInput& input : inputs) {
     const std::vector<double> force = load(input);
-    auto& right = loads_.emplace_back(static_cast<std::size_t>(2 * system.local_size()), 0.0);
+    auto& right = loads_.emplace_back(static_cast<std::size_t>(system.local_size()));
     // F holds minus the forces on its momentum rows; own states of films, behind all pairs, are not forced.
     for (PetscInt row = begin; row < std::min(begin + system.local_size(), 2 * system.coordinates()); ++row)
-      if (row % 2 == 0) right[static_cast<std::size_t>(2 * (row - begin))] = force[static_cast<std::size_t>(row / 2)];
+      if (row % 2 == 0) right[static_cast<std::size_t>(row - begin)] = force[static_cast<std::size_t>(row / 2)];
   }
 }
 
@@ -137,18 +137,17 @@ void TransferMatrix::linearise_with_loss(double omega) {
 
 Transfer TransferMatrix::at(double omega) {
   if (system_.train().rotor.loss_factor > 0) linearise_with_loss(omega);
-  solver_.factorise(omega);
+  solver_.factorise({0, omega});
   const std::size_t inputs = loads_.size();
   Transfer out{std::vector<Complex>(outputs_.size() * inputs), std::vector<double>(outputs_.size() * inputs)};
   for (std::size_t i = 0; i < inputs; ++i) {
-    std::vector<double> amplitude;
-    solver_.solve(loads_[i], amplitude);
+    const std::vector<Complex> amplitude = solver_.respond(loads_[i]);
     std::vector<double> state[2], shaft[2];
     for (std::size_t part = 0; part < 2; ++part) {
       core::Vector v = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
       {
         const core::WriteArray a(v.get());
-        for (PetscInt k = 0; k < a.size(); ++k) a[k] = amplitude[static_cast<std::size_t>(2 * k) + part];
+        std::ranges::transform(amplitude, a.data(), [part](Complex z) { return part == 0 ? z.real() : z.imag(); });
       }
       state[part] = system_.gather(v.get());
       // Not every solver tells of a singular matrix.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "study/linear/frequency_response.hpp"
-#include "whirl/solve/newton/frequency_solver.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {
@@ -60,9 +60,9 @@ private:
   [[nodiscard]] std::vector<double> load(const TransferInput& input) const;
   core::Vector x_;  // where it is linearised
   system::RotorSystem& system_;
-  solve::FrequencySolver solver_;
+  solve::FrequencyResolvent solver_;
   std::vector<TransferOutput> outputs_;
-  std::vector<std::vector<double>> loads_;  // per input, this rank's rows as real and imaginary parts
+  std::vector<std::vector<std::complex<double>>> loads_;  // per input, this rank's rows
 };
 
 }  // namespace whirl::study

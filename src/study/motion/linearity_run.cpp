@@ -150,17 +150,21 @@ LinearityRecord LinearityRunner::unpack(const std::vector<double>& flat, const L
 std::vector<double> LinearityRunner::linear(double frequency) {
   PetscInt begin = 0, end = 0;
   core::check(VecGetOwnershipRange(rest_.get(), &begin, &end));
-  std::vector<double> right(static_cast<std::size_t>(2 * (end - begin))), amplitude, out(8);
+  std::vector<double> out(8);
+  std::vector<std::complex<double>> right(static_cast<std::size_t>(end - begin));
+  response_.linearise(rest_.get());
+  response_.factorise({0, 2 * std::numbers::pi * frequency});
   for (std::size_t force = 0; force < 2; ++force) {
-    std::fill(right.begin(), right.end(), 0.0);
+    std::ranges::fill(right, 0.0);
     const auto last = static_cast<PetscInt>(2 * columns_[force].size());
     for (PetscInt row = begin + begin % 2; row < std::min(end, last); row += 2)
-      right[static_cast<std::size_t>(2 * (row - begin))] = columns_[force][static_cast<std::size_t>(row / 2)];
-    response_.solve(rest_.get(), 2 * std::numbers::pi * frequency, right, amplitude);
+      right[static_cast<std::size_t>(row - begin)] = columns_[force][static_cast<std::size_t>(row / 2)];
+    const std::vector<std::complex<double>> amplitude = response_.respond(right);
     for (std::size_t part = 0; part < 2; ++part) {
       {
         const core::WriteArray a(x_.get());
-        for (PetscInt i = 0; i < a.size(); ++i) a[i] = amplitude[static_cast<std::size_t>(2 * i) + part];
+        const auto value = [part](std::complex<double> z) { return part == 0 ? z.real() : z.imag(); };
+        std::ranges::transform(amplitude, a.data(), value);
       }
       const auto moved = watched(x_.get());
       for (std::size_t d = 0; d < 2; ++d) out[2 * (2 * d + force) + part] = moved[d];

@@ -9,7 +9,7 @@
 #include "study/bars/film_limit.hpp"
 #include "study/layout.hpp"
 #include "study/motion/linearity.hpp"
-#include "whirl/solve/newton/frequency_solver.hpp"
+#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/transient/analysis/estimators.hpp"
 #include "whirl/transient/steps/force.hpp"
@@ -53,7 +53,7 @@ private:
   core::Vector rest_, x_;
   std::array<std::vector<double>, 2> columns_;  // of unit forces on the coordinates
   FilmLimit films_;
-  solve::FrequencySolver response_;
+  solve::FrequencyResolvent response_;
 };
 
 /// The noise of force d (0 x, 1 y) at a level.

@@ -49,7 +49,7 @@ public:
     std::array<ShaftShape, 2> vibration;
     const ShaftShape still = system_.shaft(x, 0, true);
     if (!options_.unbalance.empty()) {
-      solve::FrequencySolver solver(system_);
+      solve::FrequencyResolvent solver(system_);
       const auto state = synchronous_response(system_, solver, x, options_.speed.value);
       for (std::size_t part = 0; part < 2; ++part) vibration[part] = system_.shaft(state[part].data(), 0, false);
     }

@@ -13,7 +13,7 @@
 
 namespace whirl::solve {
 
-class ShiftedSystem;
+class FrequencyResolvent;
 
 /// Critical vector of a Hopf point in scaled states [n]: (dF/dx + i omega dF/d(dx/dt)) q = 0, of any length.
 [[nodiscard]] Eigen::VectorXcd critical_vector(problem::System& system, Vec x, double omega);
@@ -78,7 +78,7 @@ private:
   double parameter_scale_, square_;
   Eigen::VectorXd state_scale_, residual_scale_;
   core::Vector weights_, x_, rate_, f_;
-  std::vector<std::unique_ptr<ShiftedSystem>> blocks_;
+  std::vector<std::unique_ptr<FrequencyResolvent>> blocks_;
   std::vector<Sample> tangents_;
   Eigen::MatrixXd columns_;  // dR/d(omega, parameter)
   Eigen::VectorXd row_;

@@ -1,0 +1,166 @@
+#include "solve/newton/frequency_hub.hpp"
+
+#include <algorithm>
+
+#include "whirl/core/index.hpp"
+
+namespace whirl::solve {
+
+using core::at;
+using Complex = std::complex<double>;
+using Eigen::Index;
+
+void FrequencyHub::linearise(const std::vector<bool>& in_blocks) {
+  const auto n = at(a.cols());
+  struct Row {
+    int in_a = 0, in_b = 0;  // nonzeros
+    Link link;
+    int state = -1;
+  };
+  std::vector<Row> rows(n);
+  for (int c = 0; c < a.outerSize(); ++c)
+    for (int e = a.outerIndexPtr()[c]; e < a.outerIndexPtr()[c + 1]; ++e) {
+      Row& row = rows[at(a.innerIndexPtr()[e])];
+      if (const double x = a.valuePtr()[e]; x != 0) row.state = c, row.link.a = x, ++row.in_a;
+      if (const double d = b.valuePtr()[e]; d != 0) row.link.to = c, row.link.b = d, ++row.in_b;
+    }
+  found_.assign(n, {});
+  std::vector<bool> fixed(n, false);  // states that others are expressed by must stay
+  for (std::size_t i = 0; i < n; ++i) {
+    Row& row = rows[i];
+    if (in_blocks[i] || row.in_a != 1 || row.in_b != 1 || row.state == row.link.to) continue;
+    const std::size_t v = at(row.state), q = at(row.link.to);
+    if (found_[v].row >= 0 || fixed[v] || found_[q].row >= 0) continue;
+    row.link.row = static_cast<int>(i);
+    found_[v] = row.link;
+    fixed[q] = true;
+  }
+}
+
+void FrequencyHub::analyse() {
+  const std::size_t n = links_.size();
+  kept_.assign(n, -1);
+  row_of_.assign(n, 0);
+  int size = 0, rows = 0;
+  for (std::size_t c = 0; c < n; ++c)
+    if (links_[c].row < 0)
+      kept_[c] = size++;
+    else
+      row_of_[at(links_[c].row)] = -1;
+  for (int& row : row_of_)
+    if (row == 0) row = rows++;
+  const auto column_of = [&](int c) { return kept_[at(links_[at(c)].row < 0 ? c : links_[at(c)].to)]; };
+  // Those of a and b that are not zero, then those of blocks.
+  const auto each = [&](auto&& sparse, auto&& dense) {
+    for (int c = 0; c < a.outerSize(); ++c)
+      for (int e = a.outerIndexPtr()[c]; e < a.outerIndexPtr()[c + 1]; ++e) {
+        const int row = row_of_[at(a.innerIndexPtr()[e])];
+        if (row >= 0 && (a.valuePtr()[e] != 0 || b.valuePtr()[e] != 0)) sparse(row, column_of(c), at(e));
+      }
+    for (const Block& block : blocks_)
+      for (const int c : block.columns)
+        for (const int r : block.rows) dense(row_of_[at(r)], column_of(c));
+  };
+  std::vector<Eigen::Triplet<Complex>> entries;
+  const auto list = [&](int row, int column, std::size_t = 0) { entries.emplace_back(row, column, 1.0); };
+  each(list, list);
+  matrix_.resize(size, size);
+  matrix_.setFromTriplets(entries.begin(), entries.end());
+  matrix_.makeCompressed();
+  const auto place = [&](int row, int column) {
+    const auto* first = matrix_.innerIndexPtr();
+    return static_cast<int>(
+        std::lower_bound(first + matrix_.outerIndexPtr()[column], first + matrix_.outerIndexPtr()[column + 1], row) -
+        first);
+  };
+  place_.assign(at(a.nonZeros()), -1);
+  block_place_.clear();
+  each([&](int row, int column, std::size_t e) { place_[e] = place(row, column); },
+       [&](int row, int column) { block_place_.push_back(place(row, column)); });
+  lu_.analyse(matrix_);
+  analysed_ = true;
+}
+
+bool FrequencyHub::factorise(Complex lambda, std::vector<Block> blocks, int border) {
+  const auto same = [](const auto& p, const auto& q, auto&& alike) {
+    return std::equal(p.begin(), p.end(), q.begin(), q.end(), alike);
+  };
+  const std::size_t n = at(a.cols() + border);
+  std::vector<Link> links = border > 0 ? std::vector<Link>(n) : found_;
+  analysed_ =
+      analysed_ && same(links, links_, [](const Link& p, const Link& q) { return p.row == q.row && p.to == q.to; }) &&
+      same(blocks, blocks_, [](const Block& p, const Block& q) { return p.rows == q.rows && p.columns == q.columns; });
+  lambda_ = lambda;
+  links_ = std::move(links);
+  blocks_ = std::move(blocks);
+  // An entry that was zero when the pattern was made and is not now asks for a new one.
+  for (int e = 0; e < a.nonZeros() && analysed_; ++e)
+    analysed_ =
+        place_[at(e)] >= 0 || row_of_[at(a.innerIndexPtr()[e])] < 0 || (a.valuePtr()[e] == 0 && b.valuePtr()[e] == 0);
+  if (!analysed_) analyse();
+  Complex* const values = matrix_.valuePtr();
+  std::fill(values, values + matrix_.nonZeros(), Complex(0));
+  const auto factor = [&](int c) { return links_[at(c)].row < 0 ? Complex(1) : follows(links_[at(c)]); };
+  for (int c = 0; c < a.outerSize(); ++c) {
+    const Complex by = factor(c);
+    for (int e = a.outerIndexPtr()[c]; e < a.outerIndexPtr()[c + 1]; ++e)
+      if (place_[at(e)] >= 0) values[place_[at(e)]] += (a.valuePtr()[e] + lambda * b.valuePtr()[e]) * by;
+  }
+  const int* to = block_place_.data();
+  for (const Block& block : blocks_)
+    for (std::size_t c = 0; c < block.columns.size(); ++c)
+      for (std::size_t r = 0; r < block.rows.size(); ++r)
+        values[*to++] += block.values(static_cast<Index>(r), static_cast<Index>(c)) * factor(block.columns[c]);
+  return lu_.factorise(matrix_);
+}
+
+template <class Use>
+void FrequencyHub::in_column(int c, Use&& use) const {
+  for (int e = a.outerIndexPtr()[c]; e < a.outerIndexPtr()[c + 1]; ++e)
+    use(a.innerIndexPtr()[e], a.valuePtr()[e] + lambda_ * b.valuePtr()[e]);
+  for (const Block& block : blocks_)
+    if (const auto found = std::find(block.columns.begin(), block.columns.end(), c); found != block.columns.end())
+      for (std::size_t r = 0; r < block.rows.size(); ++r)
+        use(block.rows[r], block.values(static_cast<Index>(r), found - block.columns.begin()));
+}
+
+// With the states x = P z + Q r and the rows S that stay: A^-1 = P (S A P)^-1 S (1 - A Q) + Q.
+FrequencyHub::Vector FrequencyHub::solve(const Vector& r) const {
+  const auto n = static_cast<int>(links_.size());
+  Vector load = r, x(n), kept(matrix_.rows());
+  for (int c = 0; c < n; ++c)
+    if (const Link& link = links_[at(c)]; link.row >= 0 && r(link.row) != 0.0) {
+      const Complex moved = r(link.row) / link.a;
+      in_column(c, [&](int row, Complex entry) { load(row) -= entry * moved; });
+    }
+  for (int i = 0; i < n; ++i)
+    if (row_of_[at(i)] >= 0) kept(row_of_[at(i)]) = load(i);
+  kept = lu_.solve(kept);
+  for (int c = 0; c < n; ++c) {
+    const Link& link = links_[at(c)];
+    x(c) = link.row < 0 ? kept(kept_[at(c)]) : r(link.row) / link.a + follows(link) * kept(kept_[at(link.to)]);
+  }
+  return x;
+}
+
+FrequencyHub::Vector FrequencyHub::solve_adjoint(const Vector& r) const {
+  const auto n = static_cast<int>(links_.size());
+  Vector y = Vector::Zero(n), kept = Vector::Zero(matrix_.rows());
+  for (int c = 0; c < n; ++c)
+    if (const Link& link = links_[at(c)]; link.row < 0)
+      kept(kept_[at(c)]) += std::conj(r(c));
+    else
+      kept(kept_[at(link.to)]) += follows(link) * std::conj(r(c));
+  kept = lu_.solve_transposed(kept).conjugate();
+  for (int i = 0; i < n; ++i)
+    if (row_of_[at(i)] >= 0) y(i) = kept(row_of_[at(i)]);
+  for (int c = 0; c < n; ++c)
+    if (const Link& link = links_[at(c)]; link.row >= 0) {
+      Complex left = r(c);
+      in_column(c, [&](int row, Complex entry) { left -= row_of_[at(row)] < 0 ? 0.0 : std::conj(entry) * y(row); });
+      y(link.row) = left / link.a;
+    }
+  return y;
+}
+
+}  // namespace whirl::solve

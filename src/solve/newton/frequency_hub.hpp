@@ -1,0 +1,65 @@
+#pragma once
+// The hub of a machine at a complex frequency, after its kinematic equations are eliminated.
+
+#include <Eigen/SparseCore>
+#include <complex>
+#include <vector>
+
+#include "whirl/core/pivoted_lu.hpp"
+
+namespace whirl::solve {
+
+/// LU of A = a + lambda b + dense blocks, whole on this rank, where rows of the kind a x_v + b x_q' = 0 (q' = v) are
+/// eliminated exactly:
+///
+///     z_v = (r_i - lambda b z_q)/a
+///
+/// A system of second order in state form so keeps its coordinates only; one without such rows is solved as it is.
+/// Columns are ordered (COLAMD) and the factorisation is analysed anew only when the nonzeros, the rows to eliminate or
+/// the places of blocks change.
+class FrequencyHub {
+public:
+  using Complex = std::complex<double>;
+  using Sparse = Eigen::SparseMatrix<double>;
+  using Vector = Eigen::VectorXcd;
+  /// Adds to A at these rows and columns.
+  struct Block {
+    std::vector<int> rows, columns;
+    Eigen::MatrixXcd values;
+  };
+
+  /// a and b with one pattern, whose values may change before linearise().
+  Sparse a, b;
+  /// Finds the kinematic rows; rows of `in_blocks` are none.
+  void linearise(const std::vector<bool>& in_blocks);
+  /// With `border` more rows and columns behind those of a, whose entries stand in blocks; no rows are eliminated then.
+  /// False if A is singular.
+  [[nodiscard]] bool factorise(Complex lambda, std::vector<Block> blocks, int border);
+  /// A^-1 r and A^-* r (conjugate transpose).
+  [[nodiscard]] Vector solve(const Vector& r) const;
+  [[nodiscard]] Vector solve_adjoint(const Vector& r) const;
+
+private:
+  struct Link {
+    int row = -1;  // equation that gives the eliminated state; -1: the state stays
+    int to = -1;   // the state whose rate it is
+    double a = 0, b = 0;
+  };
+  void analyse();
+  /// use(row, entry of A) for column c.
+  template <class Use>
+  void in_column(int c, Use&& use) const;
+  /// What z_q adds to an eliminated state.
+  [[nodiscard]] Complex follows(const Link& link) const { return -lambda_ * link.b / link.a; }
+
+  Complex lambda_;
+  std::vector<Block> blocks_;
+  std::vector<Link> found_, links_;       // per state: of linearise(), and those that the factors eliminate
+  std::vector<int> kept_, row_of_;        // place of a state that stays / row of an equation that stays, or -1
+  std::vector<int> place_, block_place_;  // of an entry of a, of blocks, among the reduced values; -1 for a zero
+  bool analysed_ = false;
+  Eigen::SparseMatrix<Complex> matrix_;
+  core::PivotedLu<Complex> lu_;
+};
+
+}  // namespace whirl::solve
