@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "film/algebra/band_lu.hpp"
+#include "film/algebra/film_matrix.hpp"
 #include "film/use/condensed.hpp"
 #include "support/film_of.hpp"
-#include "whirl/film/algebra/film_matrix.hpp"
 #include "whirl/film/contract/film.hpp"
 
 extern "C" {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "film/algebra/film_matrix.hpp"
 #include "film/gas_cases.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/algebra/film_matrix.hpp"
 
 namespace whirl::film::testing {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// Rows of assembled matrices, and the few columns of a coupling.
+// Rows of assembled matrices, and entries that ranks have of a small one.
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -33,14 +33,5 @@ void for_rows(Mat m, F&& f) {
 
 /// Number of the first row of this rank.
 [[nodiscard]] PetscInt first_row(Mat m);
-
-/// Columns that have an entry on any rank, in rising order, the same on all ranks. Collective.
-[[nodiscard]] std::vector<PetscInt> used_columns(Mat m);
-
-/// Those columns of the rows of this rank [local x columns]; `columns` rise and hold all that have an entry.
-[[nodiscard]] Eigen::MatrixXd thin(Mat m, const std::vector<PetscInt>& columns);
-
-/// All rows of a small distributed matrix, on every rank. Collective.
-[[nodiscard]] Eigen::SparseMatrix<double> gather_matrix(Mat m);
 
 }  // namespace whirl::core

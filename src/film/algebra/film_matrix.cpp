@@ -1,4 +1,4 @@
-#include "whirl/film/algebra/film_matrix.hpp"
+#include "film/algebra/film_matrix.hpp"
 
 #include <algorithm>
 #include <complex>

@@ -5,11 +5,11 @@
 #include <complex>
 #include <utility>
 
+#include "film/algebra/film_matrix.hpp"
 #include "film/use/lent_lu.hpp"
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/pivoted_lu.hpp"
-#include "whirl/film/algebra/film_matrix.hpp"
 
 namespace whirl::film {
 namespace {

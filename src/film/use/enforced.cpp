@@ -7,10 +7,10 @@
 #include <numbers>
 #include <utility>
 
+#include "film/algebra/film_matrix.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/pivoted_lu.hpp"
 #include "whirl/core/shell.hpp"
-#include "whirl/film/algebra/film_matrix.hpp"
 
 namespace whirl::film {
 namespace {

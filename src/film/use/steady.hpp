@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "film/algebra/band_lu.hpp"
+#include "film/algebra/film_matrix.hpp"
 #include "film/use/lent_lu.hpp"
-#include "whirl/film/algebra/film_matrix.hpp"
 #include "whirl/film/contract/film.hpp"
 
 namespace whirl::film {
