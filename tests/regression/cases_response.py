@@ -171,7 +171,7 @@ studies:
   - frequency_response: {name: hit, speed: 1000 rpm, range: {from: 90 Hz, to: 110 Hz}, points: 21, inputs: [{node: 1, direction: x}]}
   - frequency_response: {name: last, speed: 1000 rpm, range: {from: 5400 rpm, to: 6000 rpm}, points: 21, inputs: [{node: 1, direction: x}], coefficients: true}
   - frequency_response: {name: none, speed: 1000 rpm, range: {from: 100 Hz, to: 6000.0000000001 rpm}, points: 2, inputs: [{node: 1, direction: x}]}
-  - unbalance_response: {name: u_last, unbalance: [U], range: {from: 5400 rpm, to: 6000 rpm}, points: 21}
+  - unbalance_response: {name: u_last, unbalance: [U], range: {from: 5400 rpm, to: 6000 rpm}, points: 21, refine: false}
   - unbalance_response: {name: u_first, unbalance: [U], range: {from: 6000 rpm, to: 6600 rpm}, points: 21, refine: false, operating_speed: 6000 rpm}
 """
 
