@@ -304,7 +304,7 @@ private:
   }
   void take_run_up(const StudySummary& s) {
     const io::Group* group = group_of(s);
-    if (!group || !group->has_group("run_up") || !group->has_attribute("acceleration") || s.points < 2) return;
+    if (!group || !group->has_group("run_up") || !group->has_attribute("acceleration")) return;
     if (const Quantity* grows = find(s, "operating_speed.unstable_count"))
       vote_of(static_cast<std::int64_t>(grows->value), s.name);
     take_facts(facts_of_run_up(s, *group, speed_));

@@ -58,6 +58,7 @@ std::vector<io::ServiceFact> facts_of_run_up(const io::StudySummary& s, const io
   const std::string& unit = table.dataset("speed").unit;
   std::vector<double> speeds;
   for (const double v : table.reals("speed")) speeds.push_back(deck::number_to_si(v, unit));
+  if (speeds.size() < 2) return facts;
   const double slack = 1.01 * std::abs(speeds[speeds.size() - 1] - speeds[speeds.size() - 2]);
   const io::Quantity* grows = find(s, "operating_speed.unstable_count");
   for (const char* column : {"amplitude", "node_amplitude"}) {
