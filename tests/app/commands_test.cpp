@@ -31,7 +31,7 @@ std::string text_of(const fs::path& path, bool comments_only) {
   return out;
 }
 
-// The overrides of `text`; those with nothing but space between them belong together.
+// The overrides of `text`; those with nothing but space, or a line that goes on, between them belong together.
 std::vector<std::vector<std::string>> overrides_in(const std::string& text) {
   static const std::regex one(R"re((?:--set\s+)([\w.{},*]+\+?)=("[^"]*"|[^\s"]+))re");
   std::vector<std::vector<std::string>> groups;
@@ -44,7 +44,7 @@ std::vector<std::vector<std::string>> overrides_in(const std::string& text) {
     else
       while (std::string(".,;:)`").find(value.back()) != std::string::npos) value.pop_back();
     const auto begin = static_cast<std::size_t>(m->position());
-    if (end == std::string::npos || text.find_first_not_of(' ', end) != begin) groups.emplace_back();
+    if (end == std::string::npos || text.find_first_not_of(" \\", end) != begin) groups.emplace_back();
     groups.back().push_back((*m)[1].str() + "=" + value);
     end = begin + static_cast<std::size_t>(m->length());
   }
