@@ -1,6 +1,7 @@
 #include "solve/newton/frequency_hub.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "whirl/core/index.hpp"
 
@@ -81,12 +82,61 @@ void FrequencyHub::analyse() {
   analysed_ = true;
 }
 
+FrequencyHub::Border FrequencyHub::split(std::vector<Block>& blocks, Index n) {
+  Border out{Vector::Zero(n), Vector::Zero(n), {}, {}, 0, 0, 0};
+  for (Block& block : blocks) {
+    std::vector<Index> rows, columns;  // that stay
+    for (std::size_t r = 0; r < block.rows.size(); ++r)
+      if (block.rows[r] < n) rows.push_back(static_cast<Index>(r));
+    for (std::size_t c = 0; c < block.columns.size(); ++c)
+      if (block.columns[c] < n) columns.push_back(static_cast<Index>(c));
+    for (std::size_t r = 0; r < block.rows.size(); ++r)
+      for (std::size_t c = 0; c < block.columns.size(); ++c) {
+        const Complex entry = block.values(static_cast<Index>(r), static_cast<Index>(c));
+        if (block.rows[r] == n && block.columns[c] == n)
+          out.d += entry;
+        else if (block.columns[c] == n)
+          out.b(block.rows[r]) += entry;
+        else if (block.rows[r] == n)
+          out.c(block.columns[c]) += std::conj(entry);
+      }
+    Block inner;
+    for (const Index r : rows) inner.rows.push_back(block.rows[at(r)]);
+    for (const Index c : columns) inner.columns.push_back(block.columns[at(c)]);
+    inner.values = block.values(rows, columns);
+    block = std::move(inner);
+  }
+  std::erase_if(blocks, [](const Block& block) { return block.rows.empty() || block.columns.empty(); });
+  return out;
+}
+
 bool FrequencyHub::factorise(Complex lambda, std::vector<Block> blocks, int border) {
+  border_.reset();
+  if (border == 0) return eliminate(lambda, std::move(blocks), found_);
+  std::vector<Block> inner = blocks;
+  Border around = split(inner, a.cols());
+  if (eliminate(lambda, std::move(inner), found_)) {
+    around.v = solve_inner(around.b);
+    around.w = solve_inner_adjoint(around.c);
+    around.right = around.d - around.c.dot(around.v);
+    around.left = around.d - around.w.dot(around.b);
+    // Two steps repair a rest that is singular to rounding, not one whose last pivot is nothing at all.
+    constexpr double limit = 1e3 / std::numeric_limits<double>::epsilon();
+    const double largest = matrix_.coeffs().abs().maxCoeff();
+    const bool exact = largest * around.v.norm() < limit * around.b.norm() &&
+                       largest * around.w.norm() < limit * around.c.norm();  // false for no numbers
+    if (exact && around.right != 0.0 && around.left != 0.0) {
+      border_ = std::move(around);
+      return true;
+    }
+  }
+  return eliminate(lambda, std::move(blocks), std::vector<Link>(at(a.cols() + border)));
+}
+
+bool FrequencyHub::eliminate(Complex lambda, std::vector<Block> blocks, std::vector<Link> links) {
   const auto same = [](const auto& p, const auto& q, auto&& alike) {
     return std::equal(p.begin(), p.end(), q.begin(), q.end(), alike);
   };
-  const std::size_t n = at(a.cols() + border);
-  std::vector<Link> links = border > 0 ? std::vector<Link>(n) : found_;
   analysed_ =
       analysed_ && same(links, links_, [](const Link& p, const Link& q) { return p.row == q.row && p.to == q.to; }) &&
       same(blocks, blocks_, [](const Block& p, const Block& q) { return p.rows == q.rows && p.columns == q.columns; });
@@ -125,7 +175,7 @@ void FrequencyHub::in_column(int c, Use&& use) const {
 }
 
 // With the states x = P z + Q r and the rows S that stay: A^-1 = P (S A P)^-1 S (1 - A Q) + Q.
-FrequencyHub::Vector FrequencyHub::solve(const Vector& r) const {
+FrequencyHub::Vector FrequencyHub::solve_inner(const Vector& r) const {
   const auto n = static_cast<int>(links_.size());
   Vector load = r, x(n), kept(matrix_.rows());
   for (int c = 0; c < n; ++c)
@@ -143,7 +193,7 @@ FrequencyHub::Vector FrequencyHub::solve(const Vector& r) const {
   return x;
 }
 
-FrequencyHub::Vector FrequencyHub::solve_adjoint(const Vector& r) const {
+FrequencyHub::Vector FrequencyHub::solve_inner_adjoint(const Vector& r) const {
   const auto n = static_cast<int>(links_.size());
   Vector y = Vector::Zero(n), kept = Vector::Zero(matrix_.rows());
   for (int c = 0; c < n; ++c)
@@ -161,6 +211,38 @@ FrequencyHub::Vector FrequencyHub::solve_adjoint(const Vector& r) const {
       y(link.row) = left / link.a;
     }
   return y;
+}
+
+namespace {
+
+// Two steps: the first takes the border's unknown from the left null vector, the second what is left from the right
+// one.
+template <class Solve>
+FrequencyHub::Vector around(const FrequencyHub::Vector& r, const FrequencyHub::Vector& b, const FrequencyHub::Vector& c,
+                            const FrequencyHub::Vector& v, const FrequencyHub::Vector& w, Complex d, Complex right,
+                            Complex left, Solve&& solve) {
+  const Index n = b.size();
+  const Complex first = (r(n) - w.dot(r.head(n))) / left;
+  const FrequencyHub::Vector z = solve(r.head(n) - b * first);
+  const Complex second = (r(n) - d * first - c.dot(z)) / right;
+  FrequencyHub::Vector out(n + 1);
+  out << z - v * second, first + second;
+  return out;
+}
+
+}  // namespace
+
+FrequencyHub::Vector FrequencyHub::solve(const Vector& r) const {
+  if (!border_) return solve_inner(r);
+  const Border& m = *border_;
+  return around(r, m.b, m.c, m.v, m.w, m.d, m.right, m.left, [this](const Vector& y) { return solve_inner(y); });
+}
+
+FrequencyHub::Vector FrequencyHub::solve_adjoint(const Vector& r) const {
+  if (!border_) return solve_inner_adjoint(r);
+  const Border& m = *border_;
+  return around(r, m.c, m.b, m.w, m.v, std::conj(m.d), std::conj(m.left), std::conj(m.right),
+                [this](const Vector& y) { return solve_inner_adjoint(y); });
 }
 
 }  // namespace whirl::solve

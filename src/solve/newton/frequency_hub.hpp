@@ -3,6 +3,7 @@
 
 #include <Eigen/SparseCore>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "whirl/core/pivoted_lu.hpp"
@@ -32,8 +33,10 @@ public:
   Sparse a, b;
   /// Finds the kinematic rows; rows of `in_blocks` are none.
   void linearise(const std::vector<bool>& in_blocks);
-  /// With `border` more rows and columns behind those of a, whose entries stand in blocks; no rows are eliminated then.
-  /// False if A is singular.
+  /// With `border` (0 or 1) more rows and columns behind those of a, whose entries stand in blocks. False if A is
+  /// singular. The border is solved around the factors of the rest, which may lose rank by one (Govaerts 2000,
+  /// sec. 3.6, mixed block elimination): a full row and column among the others would fill the factors. Where the rest
+  /// is exactly singular, they are among the others, and no rows are eliminated.
   [[nodiscard]] bool factorise(Complex lambda, std::vector<Block> blocks, int border);
   /// A^-1 r and A^-* r (conjugate transpose).
   [[nodiscard]] Vector solve(const Vector& r) const;
@@ -45,7 +48,17 @@ private:
     int to = -1;   // the state whose rate it is
     double a = 0, b = 0;
   };
+  /// [A b; c^* d] with the answers of A alone: v = A^-1 b, w = A^-* c, and d - c^* v, d - w^* b.
+  struct Border {
+    Vector b, c, v, w;
+    Complex d, right, left;
+  };
   void analyse();
+  bool eliminate(Complex lambda, std::vector<Block> blocks, std::vector<Link> links);
+  /// Takes row and column n out of the blocks.
+  [[nodiscard]] static Border split(std::vector<Block>& blocks, Eigen::Index n);
+  [[nodiscard]] Vector solve_inner(const Vector& r) const;
+  [[nodiscard]] Vector solve_inner_adjoint(const Vector& r) const;
   /// use(row, entry of A) for column c.
   template <class Use>
   void in_column(int c, Use&& use) const;
@@ -54,6 +67,7 @@ private:
 
   Complex lambda_;
   std::vector<Block> blocks_;
+  std::optional<Border> border_;
   std::vector<Link> found_, links_;       // per state: of linearise(), and those that the factors eliminate
   std::vector<int> kept_, row_of_;        // place of a state that stays / row of an equation that stays, or -1
   std::vector<int> place_, block_place_;  // of an entry of a, of blocks, among the reduced values; -1 for a zero
