@@ -55,7 +55,8 @@ enum class ModesWay { whole, transfer };
 enum class PressureWay { direct, multigrid };
 [[nodiscard]] PressureWay pressure(std::int64_t nodes);
 
-/// Whether a film of so many cells starts from its solution on half the intervals; `above`: that of its deck.
+/// Whether a film of `cells` cells starts from its solution on half the intervals. `above` [cells] is the limit of its
+/// deck; 0: never.
 [[nodiscard]] bool starts_coarse(double cells, int above);
 
 /// Parts up to this size keep their factors from one frequency to the next, and with them the analysis of the pattern.

@@ -213,36 +213,27 @@ FrequencyHub::Vector FrequencyHub::solve_inner_adjoint(const Vector& r) const {
   return y;
 }
 
-namespace {
-
 // Two steps: the first takes the border's unknown from the left null vector, the second what is left from the right
 // one.
-template <class Solve>
-FrequencyHub::Vector around(const FrequencyHub::Vector& r, const FrequencyHub::Vector& b, const FrequencyHub::Vector& c,
-                            const FrequencyHub::Vector& v, const FrequencyHub::Vector& w, Complex d, Complex right,
-                            Complex left, Solve&& solve) {
+template <class Rest>
+FrequencyHub::Vector FrequencyHub::Border::solve(const Vector& r, Rest&& rest) const {
   const Index n = b.size();
   const Complex first = (r(n) - w.dot(r.head(n))) / left;
-  const FrequencyHub::Vector z = solve(r.head(n) - b * first);
+  const Vector z = rest(r.head(n) - b * first);
   const Complex second = (r(n) - d * first - c.dot(z)) / right;
-  FrequencyHub::Vector out(n + 1);
+  Vector out(n + 1);
   out << z - v * second, first + second;
   return out;
 }
 
-}  // namespace
-
 FrequencyHub::Vector FrequencyHub::solve(const Vector& r) const {
   if (!border_) return solve_inner(r);
-  const Border& m = *border_;
-  return around(r, m.b, m.c, m.v, m.w, m.d, m.right, m.left, [this](const Vector& y) { return solve_inner(y); });
+  return border_->solve(r, [this](const Vector& y) { return solve_inner(y); });
 }
 
 FrequencyHub::Vector FrequencyHub::solve_adjoint(const Vector& r) const {
   if (!border_) return solve_inner_adjoint(r);
-  const Border& m = *border_;
-  return around(r, m.c, m.b, m.w, m.v, std::conj(m.d), std::conj(m.left), std::conj(m.right),
-                [this](const Vector& y) { return solve_inner_adjoint(y); });
+  return border_->adjoint().solve(r, [this](const Vector& y) { return solve_inner_adjoint(y); });
 }
 
 }  // namespace whirl::solve

@@ -34,9 +34,9 @@ public:
   /// Finds the kinematic rows; rows of `in_blocks` are none.
   void linearise(const std::vector<bool>& in_blocks);
   /// With `border` (0 or 1) more rows and columns behind those of a, whose entries stand in blocks. False if A is
-  /// singular. The border is solved around the factors of the rest, which may lose rank by one (Govaerts 2000,
-  /// sec. 3.6, mixed block elimination): a full row and column among the others would fill the factors. Where the rest
-  /// is exactly singular, they are among the others, and no rows are eliminated.
+  /// singular. The border is solved around the factors of the rest (mixed block elimination: Govaerts and Pryce 1993;
+  /// Govaerts 2000, sec. 3.6), as a full row and column would fill them. The rest may be singular to rounding. Where it
+  /// is singular beyond that, the border is factorised with it, and no rows are eliminated.
   [[nodiscard]] bool factorise(Complex lambda, std::vector<Block> blocks, int border);
   /// A^-1 r and A^-* r (conjugate transpose).
   [[nodiscard]] Vector solve(const Vector& r) const;
@@ -52,6 +52,10 @@ private:
   struct Border {
     Vector b, c, v, w;
     Complex d, right, left;
+    /// [A b; c^* d]^-1 r, where `rest` answers for A alone.
+    template <class Rest>
+    [[nodiscard]] Vector solve(const Vector& r, Rest&& rest) const;
+    [[nodiscard]] Border adjoint() const { return {c, b, w, v, std::conj(d), std::conj(left), std::conj(right)}; }
   };
   void analyse();
   bool eliminate(Complex lambda, std::vector<Block> blocks, std::vector<Link> links);

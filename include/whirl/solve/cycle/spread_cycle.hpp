@@ -181,7 +181,7 @@ private:
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
   Eigen::MatrixXd q_ends_, image_q_ends_;
   bool image_known_ = false, rough_image_ = false;  // the same on all ranks: sizes are not, some have no states
-  bool exact_ = false;                              // V and M V are those of multipliers()
+  bool exact_ = false;                              // multipliers() left V and M V
   double contraction_ = 0;                          // of the error of V by one iteration, as last seen
   core::DenseLu<double> small_;
   mutable long products_ = 0;

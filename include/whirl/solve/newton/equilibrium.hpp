@@ -19,7 +19,7 @@ class PortMatrix;
 ///
 /// The matrix is [dF/dx dF/dp; row]. Films with own states are eliminated on their ports (`port_elimination`), with the
 /// border part of what is left, by their own preconditioners where all have one: from blocks that are spread like the
-/// films, so that no matrix is assembled unless somebody asks for it. A machine without any is what is left as a whole.
+/// films, and no matrix is assembled unless it is asked for. A machine without films is all hub.
 /// All are regular at folds. Where iterations on approximate inverses do not come to the tolerance
 /// (-equilibrium_ksp_rtol, 1e-12; -equilibrium_ksp_max_it, 100), and for transposes, such films are factorised if the
 /// machine has at most -parts_whole_states (1,000,000). Otherwise solve() throws core::DomainError with the reason,

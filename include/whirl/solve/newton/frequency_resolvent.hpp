@@ -113,7 +113,7 @@ private:
   [[nodiscard]] bool eliminates_by_inverse() const { return inverse_ || iterated_; }
   /// One pass of the entries of dF/dx or dF/d(dx/dt): the system's own list, or one made of its assembled matrix.
   void list(bool rates);
-  /// Takes all values of both passes; with `factors` also those of A_i, which their factors are made from.
+  /// Takes the values of a and b; with `factors` also the entries of every A_i, to factorise it.
   void take_entries(bool factors);
   /// Sorts the places of the entries: hub, couplings, and `own` ones of the parts. Their order never changes.
   void sort_places(bool own);
@@ -128,7 +128,7 @@ private:
   [[nodiscard]] Transfers eliminate(Complex lambda, bool slopes);
   /// A_i^-1 G_i, and its slopes, of all parts at once.
   void eliminate_by_inverse(bool slopes);
-  /// This rank's columns of all parts below each other, `columns(part)` being those of a part.
+  /// `columns(part)` of all parts below each other, this rank's rows.
   template <class F>
   [[nodiscard]] Eigen::MatrixXcd together(F&& columns) const;
   /// A_i^-1 of such columns, or A_i^-* by factors. Throws core::NotConverged if the parts are singular or iterations
