@@ -13,7 +13,11 @@ using Eigen::Map;
 
 template <class Scalar>
 PencilLu<Scalar>::PencilLu(MPI_Comm comm, PetscInt rows, std::vector<Place> a, std::vector<Place> b, const char* prefix)
-    : comm_(comm), rows_(rows), alone_(size_of(comm) == 1), a_(std::move(a)), b_(std::move(b)) {
+    : comm_(comm),
+      rows_(rows),
+      alone_(size_of(comm) == 1 && width * rows <= most_by_lu),
+      a_(std::move(a)),
+      b_(std::move(b)) {
   if (alone_) {
     std::vector<Eigen::Triplet<Scalar>> entries;
     for (const auto* places : {&a_, &b_})

@@ -33,6 +33,7 @@ constexpr SolverOption table[] = {
     {"-motion_assembled", "0", "1: steps in time take assembled matrices, for comparison"},
     {"-motion_ts_type", "", "a scheme of PETSc makes the steps in time on assembled matrices"},
     {"-newton_split_quantities", "0", "1: each field of a part stands by itself in `-newton_pc_type fieldsplit`"},
+    {"-parts_by", "automatic", "`own` or `factors`: films by inverses of their own where they have some, or by LU"},
     {"-parts_kept_states", "20000",
      "states of a film up to which its factors are kept from one frequency to the next, above FGMRES solves"},
     {"-parts_whole_states", "1000000",
@@ -160,6 +161,10 @@ ModesWay modes(std::int64_t states) {
   if (const auto way = asked<ModesWay>("-modes_by", {"whole", "transfer"})) return *way;
   // A limit of memory, which transfer functions spare: at 158 104 states both ways take the same time (docs/speed.md).
   return states > number("-modes_whole_states") ? ModesWay::transfer : ModesWay::whole;
+}
+
+PartsWay parts() {
+  return asked<PartsWay>("-parts_by", {"own", "factors"}).value_or(PartsWay::own);
 }
 
 // Multigrid is quicker above, 0.09 s to 7.6 s in 43 steps with 2,400 nodes on a busy machine: see docs/speed.md.

@@ -13,7 +13,6 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/film/contract/options.hpp"
-#include "whirl/solve/cycle/spread_collocation.hpp"
 #include "whirl/study/layout_options.hpp"
 #include "whirl/study/study.hpp"
 
@@ -35,8 +34,8 @@ std::span<const deck::Name<LayoutOptions::Machine>> names(LayoutOptions::Machine
       {automatic, "automatic", "each rank, unless its states are too many by the counts below"},
       {one_rank, "one_rank", "each rank, whatever the size"},
       {all_ranks, "all_ranks",
-       "all ranks share the states of one; cycles by collocation at Radau points only where films have states, of at "
-       "most 63 bearings: the others want whole machines"}};
+       "all ranks share the states of one; cycles by collocation at Radau points only where films have states: the "
+       "others want whole machines"}};
   return table;
 }
 
@@ -86,11 +85,6 @@ std::string reason_to_share(const LayoutOptions& options, const system::Machine&
 bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine, double intervals, double stages) {
   using enum LayoutOptions::Machine;
   if (!system::is_rotor(machine) || options.machine == one_rank) return false;
-  // Films with states are the parts.
-  const auto parts =
-      static_cast<std::size_t>(std::count_if(machine.bearings.begin(), machine.bearings.end(),
-                                             [](const auto& bearing) { return film::facts(bearing.film).own_states; }));
-  if (parts > solve::SpreadCollocation::most_parts) return false;
   const double own = n_film_states(machine);
   if (own == 0 || options.machine == all_ranks) return own > 0;
   if (own < options.film_states) return false;

@@ -106,6 +106,14 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
   for (const Part* part : parts()) part->scales(s.data() + part->row(), r.data() + part->row());
 }
 
+// Of coordinates of second order: a reduction in state space has none but for the pedestals.
+std::vector<problem::KinematicRow> RotorSystem::kinematic() const {
+  std::vector<problem::KinematicRow> out;
+  for (PetscInt q = hub_->rotor().states() ? hub_->rotor_coordinates() : 0; q < hub_->coordinates(); ++q)
+    out.push_back({2 * q + 1, 2 * q, 2 * q + 1});
+  return out;
+}
+
 std::vector<problem::Field> RotorSystem::fields() const {
   std::vector<problem::Field> out = hub_->fields("machine");
   for (std::size_t i = 0; i < bearings_.size(); ++i)

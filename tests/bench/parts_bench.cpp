@@ -46,7 +46,7 @@ Cost cost(system::RotorSystem& s, Vec x, double alpha, double sigma, bool own) {
   Cost out;
   out.prepare = 1e3 * bench::least(PETSC_COMM_SELF, 3, [&] {
                         if (own) elimination.inverse()->set({0, x, rest.get()}, alpha, sigma);
-                        elimination.factorise(a.get(), blocks);
+                        elimination.factorise(blocks);
                       }).processor;
   try {
     out.solve = 1e3 * bench::least(PETSC_COMM_SELF, 3, [&] {

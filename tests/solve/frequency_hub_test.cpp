@@ -46,7 +46,9 @@ void agrees(const Chain& c, Complex lambda) {
       hub.a.valuePtr()[e] = c.a(hub.a.innerIndexPtr()[e], k);
       hub.b.valuePtr()[e] = c.b(hub.a.innerIndexPtr()[e], k);
     }
-  hub.linearise(std::vector<bool>(static_cast<std::size_t>(n), false));
+  std::vector<problem::KinematicRow> kinematic;
+  for (int k = 0; k < n / 2; ++k) kinematic.push_back({k, k, static_cast<int>(n / 2) + k});
+  hub.linearise(kinematic);
   VectorXcd column(n), row(n), r(n + 1);
   for (Index k = 0; k <= n; ++k) {
     const auto t = static_cast<double>(k);

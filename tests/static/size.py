@@ -27,7 +27,7 @@ text = {str(p.relative_to(root)): p.read_text() for p in files}
 ALGEBRA = """
 band band_lu general_band column_chain strip_inverse lines ring_preconditioner gas_inverse lent_lu film_matrix stencil pack
 direct_inverse film_inverse
-frequency_hub frequency_inverse frequency_linearise frequency_part frequency_resolvent frequency_transfer
+part_factors frequency_hub frequency_inverse frequency_linearise frequency_part frequency_resolvent frequency_transfer
 port_elimination port_krylov port_layout port_maker port_matrix matrix_rows thin local_part stored spread_point rational_fit
 scaled_point thin_blocks linear_part thin_interval spread_interval interval own_block own_blocks own_interval own_shape small_blocks pencil
 time_modes mode_composition mode_system dense_composition sweep_composition sweep_system composition cycle_matrix cycle_layout

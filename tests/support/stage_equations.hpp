@@ -34,14 +34,13 @@ public:
     out.take(a);
     return out;
   }
-  /// Of such a matrix, by the parts' own preconditioners.
+  /// Of such a matrix, by the parts' own preconditioners unless options ask for factors.
   std::unique_ptr<solve::PortElimination> elimination(double alpha, double sigma) {
-    auto inverse = system_.make_part_inverse();
-    EXPECT_TRUE(inverse);
+    auto inverse = solve::own_inverse(system_);
     auto out = std::make_unique<solve::PortElimination>(system_.fields(), std::move(inverse));
-    out->inverse()->set({0, x_.get(), rest_.get()}, alpha, sigma);
+    if (out->inverse()) out->inverse()->set({0, x_.get(), rest_.get()}, alpha, sigma);
     const core::Matrix a = matrix(alpha, sigma);
-    out->factorise(a.get(), blocks(a.get()));
+    out->factorise(blocks(a.get()));
     return out;
   }
   core::Vector some(double factor) {

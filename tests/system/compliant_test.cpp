@@ -269,7 +269,7 @@ TEST(CompliantRotor, IterationsDoNotGrowWithTheMesh) {
       system::RotorSystem s(MPI_COMM_WORLD, t, 700);
       core::Vector x = system::static_guess(s);
       iterations.push_back(test::iterations(s, x.get(), alpha, sigma));
-      const test::WithOptions::List by_lu = {{"-parts_pc_type", "lu"}};
+      const test::WithOptions::List by_lu = {{"-parts_by", "factors"}};
       const test::WithOptions chosen(by_lu);
       EXPECT_LE(test::iterations(s, x.get(), alpha, sigma), 2) << cells;
     }

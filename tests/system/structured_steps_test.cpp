@@ -109,10 +109,9 @@ const Case cases[] = {{"short", Kind::compliant_short, Differences::upwind, Quad
                       {"rigid", Kind::short_bearing, Differences::upwind, Quadrature::sub_cell, false}};
 
 // The sparse path solves stages by the machine's parts many times: MUMPS, made for large matrices, would take most of
-// the time for calls with these small ones.
+// the time for calls with these small hubs.
 class StructuredSteps : public testing::TestWithParam<Case> {
-  const test::WithOptions small_{
-      {{"-parts_pc_factor_mat_solver_type", "klu"}, {"-hub_pc_factor_mat_solver_type", "klu"}}};
+  const test::WithOptions small_{{{"-hub_pc_factor_mat_solver_type", "klu"}}};
 };
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace whirl::core {
 
 /// A = alpha a + sigma b, whose rows stand on the ranks of a communicator in their order. On one rank the factors are
-/// PivotedLu's. On several they are MUMPS's, for complex numbers in real form, p + i q as the block [p -q; q p].
-/// Scalar: double or std::complex<double>. Collective on the communicator.
+/// PivotedLu's, up to a size. Else they are MUMPS's, for complex numbers in real form, p + i q as the block [p -q; q
+/// p]. Scalar: double or std::complex<double>. Collective on the communicator.
 template <class Scalar>
 class PencilLu {
 public:
@@ -31,6 +31,8 @@ public:
 
 private:
   static constexpr PetscInt width = sizeof(Scalar) / sizeof(double);
+  // Nested dissection, which Eigen has not, wins beyond.
+  static constexpr PetscInt most_by_lu = 20000;
   using Columns = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   void add(Place p, double value) { stream_.add(p.row, p.column, value); }
   void add(Place p, std::complex<double> value);

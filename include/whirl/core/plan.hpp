@@ -51,6 +51,10 @@ enum class LevelWay { repeated, shared };
 enum class ModesWay { whole, transfer };
 [[nodiscard]] ModesWay modes(std::int64_t states);
 
+/// Parts of a machine by inverses of their own, where they have some, or by factors.
+enum class PartsWay { own, factors };
+[[nodiscard]] PartsWay parts();
+
 /// Pressure of a film with heat: MUMPS, or BoomerAMG.
 enum class PressureWay { direct, multigrid };
 [[nodiscard]] PressureWay pressure(std::int64_t nodes);

@@ -10,6 +10,7 @@
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/problem/entries.hpp"
+#include "whirl/problem/kinematic.hpp"
 #include "whirl/problem/part_inverse.hpp"
 
 namespace whirl::problem {
@@ -39,6 +40,13 @@ struct Field {
 
 /// The same with the fields of each part as one, whose rows are [begin, end).
 [[nodiscard]] std::vector<Field> parts_of(const std::vector<Field>& fields);
+
+class System;
+/// Numbers of the hub's states among all, rising, the same on every rank. Collective.
+[[nodiscard]] std::vector<PetscInt> hub_numbers(const System& system);
+/// One pass of the entries of alpha dF/dx + sigma dF/d(dx/dt) into `out`: of a system that lists none, from `jacobian`,
+/// which is made where it is null. Collective.
+void list_entries(System& system, const Point& at, double alpha, double sigma, core::Matrix& jacobian, Entries& out);
 
 /// Everything that moves: F(angle, x, dx/dt; p) = 0 with its exact derivatives, on one communicator.
 ///
@@ -87,6 +95,10 @@ public:
   /// All states, the same fields on every rank: first the hub, to which the other parts are joined by few of its
   /// states; these do not see each other. Not collective.
   [[nodiscard]] virtual std::vector<Field> fields() const { return {{"state", 0, local_size()}}; }
+
+  /// The rows of the hub that say which of its states are rates of others, the same on every rank: solvers eliminate
+  /// them. Numbers of all states. Not collective.
+  [[nodiscard]] virtual std::vector<KinematicRow> kinematic() const { return {}; }
 
   /// Whether some states follow the others at once in equilibrium, through equations that are only piecewise smooth, so
   /// that settle() finds them. Not collective, the same on all ranks.

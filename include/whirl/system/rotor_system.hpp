@@ -90,6 +90,7 @@ public:
   void scales(Vec state_scale, Vec residual_scale) override;
   /// "machine" (rotor and pedestals), then the fields of every film with own states by the name of its bearing.
   [[nodiscard]] std::vector<problem::Field> fields() const override;
+  [[nodiscard]] std::vector<problem::KinematicRow> kinematic() const override;
   [[nodiscard]] problem::BlockStructure* structure() override;
   /// Where a film with own states offers a preconditioner; films that offer none are factorised.
   [[nodiscard]] std::unique_ptr<problem::PartInverse> make_part_inverse() override;

@@ -29,12 +29,10 @@ constexpr int settling_steps = 40, settling_laps = 60;
 
 }  // namespace
 
-static_assert(SpreadCollocation::most_parts == PortElimination::most_parts);
-
 struct SpreadCollocation::Tools {
   Tools(problem::System& system, const Scheme& scheme)
       : point(system), maker(PortMaker::make(system)), step(system.comm(), system.local_size(), scheme) {
-    core::require(maker != nullptr, "a machine whose parts elimination keeps apart");
+    core::require(maker != nullptr, "a machine with parts");
     each_point = system.settles();
   }
   problem::SpreadPoint point;
@@ -107,8 +105,7 @@ std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const MatrixXd& x
     point.jacobian(here, value_.get(), rate_.get(), own, 1, tools_->matrix);
     blocks[at(j)] = maker.blocks(tools_->matrix.get());
     if (eliminate && (each || j == 0))
-      similar.push_back(maker.eliminate(tools_->matrix.get(), *blocks[at(j)], here, point.x(), point.xdot(), own,
-                                        columns == nullptr));
+      similar.push_back(maker.eliminate(*blocks[at(j)], here, point.x(), point.xdot(), own, columns == nullptr));
     if (!columns) continue;
     point.parameter_derivative(here, value_.get(), rate_.get(), f_.get());
     {

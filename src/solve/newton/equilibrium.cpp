@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -113,16 +112,7 @@ bool EquilibriumProblem::settle(Vec u) {
 
 void EquilibriumProblem::list() {
   problem::Entries& out = entries_;
-  if (!system_.entries(0, x_.get(), rest_.get(), 1, 0, out)) {
-    if (!jacobian_) jacobian_ = system_.make_jacobian();
-    system_.jacobian(0, x_.get(), rest_.get(), 1, 0, jacobian_.get());
-    out.begin();
-    const PetscInt first = core::first_row(jacobian_.get());
-    core::for_rows(jacobian_.get(),
-                   [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
-                     for (PetscInt k = 0; k < count; ++k) out.add(first + i, columns[k], values[k]);
-                   });
-  }
+  problem::list_entries(system_, {0, x_.get(), rest_.get()}, 1, 0, jacobian_, out);
   // The border; entries of its row in the hub's columns belong to the rank that has this row.
   const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
   const PetscInt n = system_.size();
@@ -144,9 +134,6 @@ void EquilibriumProblem::list() {
 
 void EquilibriumProblem::linearise(Vec u, Vec row) {
   prepare(u);
-  std::vector<problem::Field> parts = system_.fields();
-  const bool apart = PortElimination::keeps_apart(parts);
-  if (!apart) parts.resize(1);  // all is hub
   if (!row_) {
     for (core::Vector* v : {&row_, &rows_, &columns_}) *v = make_unknown();
     for (const auto& [to, from] :
@@ -156,16 +143,7 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
       const core::WriteArray b(to);
       std::copy_n(a.data(), a.size(), b.data());
     }
-    PetscInt first = 0;
-    check(VecGetOwnershipRange(x_.get(), &first, nullptr));
-    std::vector<int> counts(static_cast<std::size_t>(core::size_of(comm()))), begins = counts;
-    const auto count = static_cast<int>(parts.front().end - parts.front().begin);
-    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm());
-    std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
-    std::vector<PetscInt> here(static_cast<std::size_t>(count));
-    std::iota(here.begin(), here.end(), first + parts.front().begin);
-    hub_.resize(static_cast<std::size_t>(begins.back() + counts.back()));
-    MPI_Allgatherv(here.data(), count, MPIU_INT, hub_.data(), counts.data(), begins.data(), MPIU_INT, comm());
+    hub_ = problem::hub_numbers(system_);
   }
   check(VecCopy(row, row_.get()));
   system_.parameter_derivative(0, x_.get(), rest_.get(), f_.get());
@@ -173,23 +151,17 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   if (!blocks_) {
     PetscInt local = 0;
     check(VecGetLocalSize(row_.get(), &local));
-    if (!apart) bordered_ = entries_.matrix(comm(), local);
-    blocks_ =
-        std::make_unique<PortMatrix>(apart ? std::make_shared<const PortLayout>(comm(), local, parts, entries_.places())
-                                           : std::make_shared<const PortLayout>(bordered_.get(), parts));
+    blocks_ = std::make_unique<PortMatrix>(
+        std::make_shared<const PortLayout>(comm(), local, system_.fields(), entries_.places()));
   }
   if (bordered_) fill_bordered();
-  if (apart) {
-    blocks_->take(entries_.values());
-    blocks_->scale(rows_.get(), columns_.get());
-  } else {
-    blocks_->take(bordered_.get());
-  }
+  blocks_->take(entries_.values());
+  blocks_->scale(rows_.get(), columns_.get());
   factorised_ = exact_factorised_ = false;
   if (!ports_ && !exact_) {
-    auto inverse = apart ? system_.make_part_inverse() : nullptr;
+    auto inverse = own_inverse(system_);
     std::unique_ptr<PortElimination>& elimination = inverse && inverse->exact() == nullptr ? ports_ : exact_;
-    elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
+    elimination = std::make_unique<PortElimination>(system_.fields(), std::move(inverse));
   }
   for (const PortElimination* elimination : {ports_.get(), exact_.get()})
     if (elimination && elimination->inverse()) elimination->inverse()->set({0, x_.get(), rest_.get()}, 1, 0);
@@ -199,7 +171,7 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
 std::string EquilibriumProblem::solve_by_inverses(Vec rhs, Vec x) {
   constexpr double tolerance = 1e-12;
   try {
-    if (!factorised_) ports_->factorise(ports_->wants_matrix(*blocks_) ? matrix() : nullptr, *blocks_);
+    if (!factorised_) ports_->factorise(*blocks_);
     factorised_ = true;
     if (!krylov_) krylov_ = std::make_unique<PortKrylov>(*blocks_->layout(), "equilibrium_");
     (void)krylov_->solve(*blocks_, *ports_, rhs, x, tolerance);
@@ -224,7 +196,7 @@ void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
     }
   }
   if (!exact_) exact_ = std::make_unique<PortElimination>(system_.fields());
-  if (!exact_factorised_) exact_->factorise(exact_->wants_matrix(*blocks_) ? matrix() : nullptr, *blocks_);
+  if (!exact_factorised_) exact_->factorise(*blocks_);
   exact_factorised_ = true;
   if (transposed)
     exact_->solve_transposed(rhs, x);

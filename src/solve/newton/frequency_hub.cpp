@@ -11,31 +11,10 @@ using core::at;
 using Complex = std::complex<double>;
 using Eigen::Index;
 
-void FrequencyHub::linearise(const std::vector<bool>& in_blocks) {
-  const auto n = at(a.cols());
-  struct Row {
-    int in_a = 0, in_b = 0;  // nonzeros
-    Link link;
-    int state = -1;
-  };
-  std::vector<Row> rows(n);
-  for (int c = 0; c < a.outerSize(); ++c)
-    for (int e = a.outerIndexPtr()[c]; e < a.outerIndexPtr()[c + 1]; ++e) {
-      Row& row = rows[at(a.innerIndexPtr()[e])];
-      if (const double x = a.valuePtr()[e]; x != 0) row.state = c, row.link.a = x, ++row.in_a;
-      if (const double d = b.valuePtr()[e]; d != 0) row.link.to = c, row.link.b = d, ++row.in_b;
-    }
-  found_.assign(n, {});
-  std::vector<bool> fixed(n, false);  // states that others are expressed by must stay
-  for (std::size_t i = 0; i < n; ++i) {
-    Row& row = rows[i];
-    if (in_blocks[i] || row.in_a != 1 || row.in_b != 1 || row.state == row.link.to) continue;
-    const std::size_t v = at(row.state), q = at(row.link.to);
-    if (found_[v].row >= 0 || fixed[v] || found_[q].row >= 0) continue;
-    row.link.row = static_cast<int>(i);
-    found_[v] = row.link;
-    fixed[q] = true;
-  }
+void FrequencyHub::linearise(const std::vector<problem::KinematicRow>& kinematic) {
+  found_.assign(at(a.cols()), {});
+  for (const auto& [row, state, rate] : kinematic)
+    found_[at(rate)] = {row, state, a.coeff(row, rate), b.coeff(row, state)};
 }
 
 void FrequencyHub::analyse() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "whirl/core/pivoted_lu.hpp"
+#include "whirl/problem/kinematic.hpp"
 
 namespace whirl::solve {
 
@@ -31,8 +32,8 @@ public:
 
   /// a and b with one pattern, whose values may change before linearise().
   Sparse a, b;
-  /// Finds the kinematic rows; rows of `in_blocks` are none.
-  void linearise(const std::vector<bool>& in_blocks);
+  /// `kinematic` are rows of both, and of no block.
+  void linearise(const std::vector<problem::KinematicRow>& kinematic);
   /// With `border` (0 or 1) more rows and columns behind those of a, whose entries stand in blocks. False if A is
   /// singular. The border is solved around the factors of the rest (mixed block elimination: Govaerts and Pryce 1993;
   /// Govaerts 2000, sec. 3.6), as a full row and column would fill them. The rest may be singular to rounding. Where it

@@ -18,51 +18,29 @@ using Eigen::VectorXd;
 using ConstMap = Eigen::Map<const VectorXd>;
 using Slice = Eigen::Map<VectorXd>;
 
-FrequencyInverse::FrequencyInverse(problem::System& system, std::unique_ptr<problem::PartInverse> approximate)
-    : system_(system), approximate_(std::move(approximate)), gate_(system.comm()) {}
+FrequencyInverse::FrequencyInverse(MPI_Comm comm, std::unique_ptr<problem::PartInverse> approximate)
+    : approximate_(std::move(approximate)), gate_(comm) {}
 
-void FrequencyInverse::set_at(Vec x, Vec rest, Complex lambda) {
+void FrequencyInverse::set_at(const PortMatrix& a, const PortMatrix& b, const problem::Point& at, Complex lambda) {
   lambda_ = lambda;
-  core::Vector rows = core::duplicate(x), columns = core::duplicate(x);
-  system_.scales(columns.get(), rows.get());
-  check(VecReciprocal(rows.get()));
-  for (const bool rates : {false, true}) {
-    core::require(system_.entries(0, x, rest, rates ? 0 : 1, rates ? 1 : 0, entries_),
-                  "a system with inverses of its parts lists its entries");
-    if (!a_) {
-      auto layout =
-          std::make_shared<const PortLayout>(system_.comm(), system_.local_size(), system_.fields(), entries_.places());
-      a_ = std::make_unique<PortMatrix>(layout);
-      b_ = std::make_unique<PortMatrix>(layout);
-      whole_in_.setZero(layout->local());
-      whole_out_.setZero(layout->local());
-      hub_.setZero(layout->hub());
-      by_a_.setZero(layout->parts());
-      by_b_.setZero(layout->parts());
-      shell_ = core::make_shell(system_.comm(), 2 * layout->parts(), gate_, [this](Vec v, Vec y) { multiply(v, y); });
-      for (core::Vector* v : {&right_, &answer_})
-        *v = core::make_vector(system_.comm(), 2 * layout->parts(), PETSC_DETERMINE);
-      const core::KrylovOptions options{
-          .prefix = "frequency_", .type = KSPFGMRES, .tolerance = 1e-12, .most = 300, .restart = 100};
-      ksp_ = core::make_krylov(shell_.get(), gate_, options, [this](Vec r, Vec y) {
-        const core::ReadArray ra(r);
-        const core::WriteArray ya(y);
-        approximate_->apply(ra.span(), ya.span());  // two columns
-      });
-    }
-    PortMatrix& m = rates ? *b_ : *a_;
-    m.take(entries_.values());
-    m.scale(rows.get(), columns.get());
+  a_ = &a;
+  b_ = &b;
+  if (!ksp_) {
+    const MPI_Comm comm = a.layout()->comm();
+    const PetscInt parts = a.layout()->parts();
+    by_a_.setZero(parts);
+    by_b_.setZero(parts);
+    shell_ = core::make_shell(comm, 2 * parts, gate_, [this](Vec v, Vec y) { multiply(v, y); });
+    for (core::Vector* v : {&right_, &answer_}) *v = core::make_vector(comm, 2 * parts, PETSC_DETERMINE);
+    const core::KrylovOptions options{
+        .prefix = "frequency_", .type = KSPFGMRES, .tolerance = 1e-12, .most = 300, .restart = 100};
+    ksp_ = core::make_krylov(shell_.get(), gate_, options, [this](Vec r, Vec y) {
+      const core::ReadArray ra(r);
+      const core::WriteArray ya(y);
+      approximate_->apply(ra.span(), ya.span());  // two columns
+    });
   }
-  approximate_->set({0, x, rest}, 1, std::abs(lambda));
-}
-
-void FrequencyInverse::multiply(const PortMatrix& m, const double* in, double* out) {
-  const PortLayout& layout = *m.layout();
-  hub_.setZero();
-  layout.give(in, hub_.data(), whole_in_.data());
-  m.multiply(whole_in_.data(), whole_out_.data());
-  layout.take(whole_out_.data(), out, hub_.data());
+  approximate_->set(at, 1, std::abs(lambda));
 }
 
 void FrequencyInverse::multiply(Vec x, Vec y) {
@@ -70,12 +48,12 @@ void FrequencyInverse::multiply(Vec x, Vec y) {
   const core::WriteArray ya(y);
   const Index n = by_a_.size();
   Slice real(ya.data(), n), imaginary(ya.data() + n, n);
-  multiply(*a_, xa.data(), by_a_.data());
-  multiply(*b_, xa.data(), by_b_.data());
+  a_->multiply_parts(xa.data(), by_a_.data());
+  b_->multiply_parts(xa.data(), by_b_.data());
   real = by_a_ + lambda_.real() * by_b_;
   imaginary = lambda_.imag() * by_b_;
-  multiply(*a_, xa.data() + n, by_a_.data());
-  multiply(*b_, xa.data() + n, by_b_.data());
+  a_->multiply_parts(xa.data() + n, by_a_.data());
+  b_->multiply_parts(xa.data() + n, by_b_.data());
   real -= lambda_.imag() * by_b_;
   imaginary += by_a_ + lambda_.real() * by_b_;
 }
@@ -92,9 +70,8 @@ void FrequencyInverse::apply_at(const Complex* r, Complex* y, std::ptrdiff_t row
     gate_.rethrow(KSPSolve(ksp_.get(), right_.get(), answer_.get()));
     PetscInt taken = 0;
     check(KSPGetIterationNumber(ksp_.get(), &taken));
-    iterations_ += taken;
     if (core::reason_of(ksp_.get()) < 0)
-      core::agree(system_.comm(), [&] {
+      core::agree(a_->layout()->comm(), [&] {
         throw core::NotConverged(
             fmt::format("the equations of the films at {:.4g} + {:.4g}i 1/s were not solved in {} "
                         "iterations (-frequency_ksp_max_it, -frequency_ksp_rtol)",
@@ -105,23 +82,6 @@ void FrequencyInverse::apply_at(const Complex* r, Complex* y, std::ptrdiff_t row
     to.real() = ConstMap(from.data(), n);
     to.imag() = ConstMap(from.data() + n, n);
   }
-}
-
-Eigen::MatrixXcd FrequencyInverse::rates_times(const Eigen::MatrixXcd& columns) {
-  Eigen::MatrixXcd out(columns.rows(), columns.cols());
-  for (Index c = 0; c < columns.cols(); ++c)
-    for (const bool real : {true, false}) {
-      if (real)
-        by_a_ = columns.col(c).real();
-      else
-        by_a_ = columns.col(c).imag();
-      multiply(*b_, by_a_.data(), by_b_.data());
-      if (real)
-        out.col(c).real() = by_b_;
-      else
-        out.col(c).imag() = by_b_;
-    }
-  return out;
 }
 
 }  // namespace whirl::solve

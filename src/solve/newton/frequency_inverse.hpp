@@ -24,38 +24,28 @@ namespace whirl::solve {
 /// KSP with prefix "frequency_", by default to the relative residual 1e-12 in at most 300 iterations. Collective.
 class FrequencyInverse {
 public:
-  /// `approximate`: of the parts of `system`, which lists its entries and outlives this.
-  FrequencyInverse(problem::System& system, std::unique_ptr<problem::PartInverse> approximate);
+  /// `approximate`: of the parts of a system on `comm`.
+  FrequencyInverse(MPI_Comm comm, std::unique_ptr<problem::PartInverse> approximate);
   FrequencyInverse(const FrequencyInverse&) = delete;
   FrequencyInverse& operator=(const FrequencyInverse&) = delete;
 
-  /// Takes the derivatives at x, at rest. Throws core::DomainError as PartInverse::set().
-  void set_at(Vec x, Vec rest, std::complex<double> lambda);
+  /// For a and b, scaled, at this point; both outlive its use. Throws core::DomainError as PartInverse::set().
+  void set_at(const PortMatrix& a, const PortMatrix& b, const problem::Point& at, std::complex<double> lambda);
   /// y = A^-1 r: this rank's rows of all parts [rows x columns]. Throws core::NotConverged, on all ranks, if the
   /// iterations do not come to the tolerance.
   void apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows, int columns);
-  /// b times columns [this rank's rows of the parts x columns].
-  [[nodiscard]] Eigen::MatrixXcd rates_times(const Eigen::MatrixXcd& columns);
-  /// Iterations of all solves so far. Not collective.
-  [[nodiscard]] PetscInt iterations() const { return iterations_; }
 
 private:
-  /// out = a_pp in or b_pp in, of this rank's rows of the parts.
-  void multiply(const PortMatrix& m, const double* in, double* out);
   void multiply(Vec x, Vec y);
 
-  problem::System& system_;
   std::unique_ptr<problem::PartInverse> approximate_;
   std::complex<double> lambda_;
-  problem::Entries entries_;
-  std::unique_ptr<PortMatrix> a_, b_;
-  Eigen::VectorXd whole_in_, whole_out_, hub_;  // work space: this rank's rows, and those of the hub
-  Eigen::VectorXd by_a_, by_b_;                 // and those of the parts
+  const PortMatrix *a_ = nullptr, *b_ = nullptr;
+  Eigen::VectorXd by_a_, by_b_;  // work space
   core::Gate gate_;
   core::Matrix shell_;
   core::Vector right_, answer_;  // in real form: all real parts of a rank, then all imaginary ones
   core::LinearSolver ksp_;
-  PetscInt iterations_ = 0;
 };
 
 }  // namespace whirl::solve

@@ -4,32 +4,15 @@
 #include <cmath>
 
 #include "solve/newton/frequency_hub.hpp"
-#include "solve/newton/frequency_inverse.hpp"
 #include "solve/newton/frequency_part.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
 
-using core::check;
 using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
-
-MatrixXcd FrequencyResolvent::Coupled::rates_times(const MatrixXcd& columns) const {
-  core::Vector in, out;
-  check(MatCreateVecs(b.get(), in.put(), out.put()));
-  const auto times = [&](const Eigen::VectorXd& v) -> VectorXcd {
-    std::ranges::copy(v, core::WriteArray(in.get()).data());
-    check(MatMult(b.get(), in.get(), out.get()));
-    const core::ReadArray a(out.get());
-    return Eigen::Map<const Eigen::VectorXd>(a.data(), a.size()).cast<Complex>();
-  };
-  MatrixXcd product(columns.rows(), columns.cols());
-  for (Index k = 0; k < columns.cols(); ++k)
-    product.col(k) = times(columns.col(k).real()) + Complex(0, 1) * times(columns.col(k).imag());
-  return product;
-}
 
 FrequencyResolvent::Sparse FrequencyResolvent::matrix(Complex lambda, const Transfers& parts, bool slope) const {
   std::vector<Eigen::Triplet<Complex>> entries;
@@ -83,15 +66,15 @@ MatrixXcd FrequencyResolvent::from_motion(std::size_t i, const Block& part, Comp
 }
 
 std::vector<Complex> FrequencyResolvent::state(const VectorXcd& z, Complex ahead) const {
-  VectorXcd mine = VectorXcd::Zero(system_.local_size());
-  for (std::size_t k = 0; k < hub_numbers_.size(); ++k)
-    if (const PetscInt i = hub_numbers_[k] - begin_; i >= 0 && i < mine.size()) mine(i) = z(static_cast<Index>(k));
+  const PortLayout& layout = *at_rest_->layout();
+  VectorXcd mine(layout.local()), own(layout.parts());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Coupled& p = *parts_[i];
     const VectorXcd seen = z(ports_[i].seen);
-    mine.segment(p.first, p.count) = -p.x * seen;
-    if (p.dx.size() > 0) mine.segment(p.first, p.count) -= ahead * (p.dx * seen);
+    own.segment(p.row, p.count) = -p.x * seen;
+    if (p.dx.size() > 0) own.segment(p.row, p.count) -= ahead * (p.dx * seen);
   }
+  layout.give(own.data(), z.data() + layout.first_of_hub(), mine.data());
   const VectorXcd all = whole(mine);
   return {all.begin(), all.end()};
 }
@@ -109,7 +92,7 @@ std::vector<FrequencyResolvent::Pole> FrequencyResolvent::poles(std::size_t i, d
   std::vector<Pole> out;
   for (const spectral::LocalMode& m : spectral::modes_within(p.a.get(), p.b.get(), target, radius)) {
     const Eigen::Map<const VectorXcd> v(m.shape.data(), static_cast<Index>(m.shape.size()));
-    const MatrixXcd f = p.f0 + m.lambda * p.f1;
+    const MatrixXcd f = p.f(*at_rest_) + m.lambda * p.f(*rates_);
     VectorXcd force = f.transpose() * v;
     std::vector<double> sizes{f.squaredNorm(), v.squaredNorm()};
     MPI_Allreduce(MPI_IN_PLACE, force.data(), static_cast<int>(force.size()), MPI_C_DOUBLE_COMPLEX, MPI_SUM, comm());

@@ -52,7 +52,7 @@ public:
 
 private:
   static std::unique_ptr<problem::PartInverse> exact_inverse(problem::System& system) {
-    auto inverse = system.make_part_inverse();
+    auto inverse = own_inverse(system);
     return inverse && inverse->exact() != nullptr ? std::move(inverse) : nullptr;
   }
 
@@ -66,7 +66,7 @@ private:
 class WholeSearch {
 public:
   WholeSearch(problem::System& system, Vec x, spectral::EigenOptions options)
-      : system_(system), x_(x), options_(options), ports_(PortElimination::serves(system.fields())) {}
+      : system_(system), x_(x), options_(options), ports_(problem::parts_of(system.fields()).size() > 1) {}
 
   // The `count` nearest to zero. Those far out do not converge where the nearest are slower by many orders: a second
   // search begins beside the farthest that did.

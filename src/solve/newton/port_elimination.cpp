@@ -6,7 +6,6 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 
@@ -24,11 +23,6 @@ namespace {
 // Fails like a factorisation whose answer is of no use.
 void require_answer(KSP ksp) {
   if (core::reason_of(ksp) < 0) fail();
-}
-
-// The same on all ranks of `comm`, which see the same reason.
-void require_answer(MPI_Comm comm, KSP ksp) {
-  if (core::reason_of(ksp) < 0) core::agree(comm, fail);
 }
 
 // MUMPS tells of a singular matrix by a reason, KLU by an error.
@@ -49,7 +43,6 @@ void require_factors(KSP ksp) {
 
 PortElimination::PortElimination(std::vector<problem::Field> fields, std::unique_ptr<problem::PartInverse> inverse)
     : fields_(std::move(fields)), inverse_(std::move(inverse)) {
-  core::require(keeps_apart(fields_), "parts that elimination keeps apart");
   any_ = problem::parts_of(fields_).size() > 1;
 }
 
@@ -57,11 +50,9 @@ void PortElimination::make_solvers() {
   const MPI_Comm comm = layout_->comm();
   PC pc = nullptr;
   PetscBool once = PETSC_FALSE;
-  gate_ = std::make_unique<core::Gate>(comm);
-  part_rhs_ = core::make_vector(comm, layout_->parts(), PETSC_DETERMINE);
-  part_answer_ = core::duplicate(part_rhs_.get());
   all_hub_.setZero(layout_->whole_hub() + 1);
-  if (any_) make_part_solver();
+  of_parts_.setZero(layout_->parts(), 1);
+  if (any_ && !inverse_) factors_ = std::make_unique<PartFactors<double>>(layout_);
   const std::vector<PetscInt>& offsets = layout_->hub_offsets();
   const auto rows_of = [&](int rank) {
     return offsets[static_cast<std::size_t>(rank) + 1] - offsets[static_cast<std::size_t>(rank)];
@@ -72,7 +63,7 @@ void PortElimination::make_solvers() {
   // Rows that others lend travel whole.
   constexpr PetscInt most_lent = 8;
   lent_ = layout_->whole_hub() - rows_of(leader_);
-  hub_alone_ = (inverse_ || !any_) && lent_ <= most_lent;
+  hub_alone_ = lent_ <= most_lent;
   if (!hub_alone_) lent_ = 0;
   own_hub_.setZero(layout_->hub());
   const MPI_Comm hub_comm = hub_alone_ ? PETSC_COMM_SELF : comm;
@@ -90,32 +81,6 @@ void PortElimination::make_solvers() {
   hub_once_ = once && hub_alone_;
 }
 
-void PortElimination::make_part_solver() {
-  check(KSPCreate(layout_->comm(), part_solver_.put()));
-  KSP ksp = part_solver_.get();
-  PC pc = nullptr;
-  check(KSPSetOptionsPrefix(ksp, "parts_"));
-  core::make_direct(ksp);
-  check(KSPGetPC(ksp, &pc));
-  if (inverse_)
-    core::set_shell(pc, *gate_, [this](Vec r, Vec y) {
-      const core::ReadArray ra(r);
-      const core::WriteArray ya(y);
-      inverse_->apply(ra.span(), ya.span());
-    });
-  check(KSPSetFromOptions(ksp));
-  PetscBool lu = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCLU, &lu));
-  if (MatSolverType by = nullptr; lu) {
-    check(PCFactorGetMatSolverType(pc, &by));
-    if (!by) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  }
-  PetscBool shell = PETSC_FALSE, once = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &once));
-  by_inverse_ = shell && once;
-}
-
 PetscInt PortElimination::solved_hub() const {
   return !hub_alone_ ? layout_->hub() : leads() ? layout_->whole_hub() : 0;
 }
@@ -124,22 +89,6 @@ PetscInt PortElimination::lent(PetscInt row) const {
   const auto leader = static_cast<std::size_t>(leader_);
   const PetscInt begin = layout_->hub_offsets()[leader], end = layout_->hub_offsets()[leader + 1];
   return row < begin ? row : row - (end - begin);
-}
-
-void PortElimination::solve_columns(const PortMatrix& blocks) {
-  const PortLayout& l = *layout_;
-  const MatrixXd& g = blocks.to_parts();
-  x_.resize(g.rows(), g.cols());
-  if (!any_) return;
-  if (by_inverse_) {
-    inverse_->apply(core::span_of(g), core::span_of(x_));
-    return;
-  }
-  core::Matrix columns, answers;
-  for (const auto& [m, data] : {std::pair{&columns, const_cast<double*>(g.data())}, std::pair{&answers, x_.data()}})
-    check(MatCreateDense(l.comm(), l.parts(), PETSC_DECIDE, PETSC_DETERMINE, l.ports().colours, data, m->put()));
-  gate_->rethrow(KSPMatSolve(part_solver_.get(), columns.get(), answers.get()));
-  require_answer(l.comm(), part_solver_.get());
 }
 
 void PortElimination::form_hub(const PortMatrix& blocks) {
@@ -197,29 +146,18 @@ void PortElimination::form_hub(const PortMatrix& blocks) {
 void PortElimination::factorise(Mat a) {
   if (!blocks_) blocks_ = std::make_unique<PortMatrix>(std::make_shared<const PortLayout>(a, fields_));
   blocks_->take(a);
-  factorise(a, *blocks_);
+  factorise(*blocks_);
 }
 
-bool PortElimination::wants_matrix(const PortMatrix& blocks) {
+void PortElimination::factorise_parts(const PortMatrix& blocks) {
   layout_ = blocks.layout();
   if (!hub_solver_) make_solvers();
-  return any_ && !by_inverse_;
+  if (factors_) factors_->set(blocks);
 }
 
-void PortElimination::factorise_parts(Mat a, const PortMatrix& blocks) {
-  if (wants_matrix(blocks)) {
-    const bool first = !parts_;
-    Mat raw = parts_.get();
-    IS rows = layout_->part_rows().get();
-    check(
-        MatCreateSubMatrix(a, rows, rows, first ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, first ? parts_.put() : &raw));
-    check(KSPSetOperators(part_solver_.get(), parts_.get(), parts_.get()));
-  }
-}
-
-void PortElimination::factorise(Mat a, const PortMatrix& blocks) {
-  factorise_parts(a, blocks);
-  solve_columns(blocks);
+void PortElimination::factorise(const PortMatrix& blocks) {
+  factorise_parts(blocks);
+  x_ = any_ ? solve_parts(blocks.to_parts(), false) : blocks.to_parts();
   form_hub(blocks);
   check(KSPSetOperators(hub_solver_.get(), schur_.get(), schur_.get()));
   if (!hub_alone_) check(KSPSetUp(hub_solver_.get()));  // by all ranks; below, each sees what became of it
@@ -282,55 +220,49 @@ void PortElimination::take_from_hub(const std::vector<PetscInt>& rows) {
     if (rows[k] >= first && rows[k] < first + a.size()) a[rows[k] - first] -= shares_(static_cast<Index>(k));
 }
 
-// part_answer_ = A_pp^-1 part_rhs_, or with the transpose.
-void PortElimination::solve_parts(bool transposed) {
-  if (!any_) return;
-  problem::ExactPartInverse* const exact = by_inverse_ ? inverse_->exact() : nullptr;
-  if (by_inverse_ && (!transposed || exact != nullptr)) {
-    const core::ReadArray r(part_rhs_.get());
-    const core::WriteArray y(part_answer_.get());
-    transposed ? exact->apply_transposed(r.span(), y.span()) : inverse_->apply(r.span(), y.span());
-    return;
+MatrixXd PortElimination::solve_parts(const MatrixXd& right, bool transposed) {
+  if (factors_) {
+    MatrixXd out = factors_->solve(right, transposed);
+    core::agree(layout_->comm(), [&] {
+      if (!out.allFinite() && right.allFinite()) fail();
+    });
+    return out;
   }
-  KSP ksp = part_solver_.get();
-  gate_->rethrow(transposed ? KSPSolveTranspose(ksp, part_rhs_.get(), part_answer_.get())
-                            : KSPSolve(ksp, part_rhs_.get(), part_answer_.get()));
-  require_answer(layout_->comm(), ksp);
+  MatrixXd out(right.rows(), right.cols());
+  if (!any_) return out;
+  core::require(!transposed || inverse_->exact() != nullptr, "transposes of exact inverses");
+  if (transposed)
+    inverse_->exact()->apply_transposed(core::span_of(right), core::span_of(out));
+  else
+    inverse_->apply(core::span_of(right), core::span_of(out));
+  return out;
 }
 
 void PortElimination::take(Vec whole) {
   const core::ReadArray from(whole);
-  const core::WriteArray parts(part_rhs_.get());
-  layout_->take(from.data(), parts.data(), own_hub_.data());
+  layout_->take(from.data(), of_parts_.data(), own_hub_.data());
 }
 
 void PortElimination::give(Vec whole) const {
-  const core::ReadArray parts(part_answer_.get());
   const core::WriteArray to(whole);
-  layout_->give(parts.data(), all_hub_.data() + layout_->first_of_hub(), to.data());
+  layout_->give(of_parts_.data(), all_hub_.data() + layout_->first_of_hub(), to.data());
 }
 
 void PortElimination::solve(Vec rhs, Vec x) {
   const PortLayout& l = *layout_;
   take(rhs);
-  solve_parts(false);
-  {
-    const core::ReadArray y(part_answer_.get());
-    clear_shares(l.coupled().numbers.size());
-    l.add_products(l.coupled(), *from_parts_, y.data(), shares_.data());
-  }
+  of_parts_ = solve_parts(of_parts_, false);
+  clear_shares(l.coupled().numbers.size());
+  l.add_products(l.coupled(), *from_parts_, of_parts_.data(), shares_.data());
   take_from_hub(l.coupled().numbers);
   solve_hub(false);
-  {
-    const core::WriteArray y(part_answer_.get());
-    l.add_columns(l.ports(), x_, -1, all_hub_.data(), y.data());
-  }
+  l.add_columns(l.ports(), x_, -1, all_hub_.data(), of_parts_.data());
   give(x);
 }
 
 void PortElimination::solve_held(Vec rhs, Vec x) {
   take(rhs);
-  solve_parts(false);
+  of_parts_ = solve_parts(of_parts_, false);
   all_hub_.setZero();
   give(x);
 }
@@ -339,18 +271,12 @@ void PortElimination::solve_held(Vec rhs, Vec x) {
 void PortElimination::solve_transposed(Vec rhs, Vec x) {
   const PortLayout& l = *layout_;
   take(rhs);
-  {
-    const core::ReadArray a(part_rhs_.get());
-    clear_shares(l.ports().numbers.size());
-    l.add_products(l.ports(), x_, a.data(), shares_.data());
-  }
+  clear_shares(l.ports().numbers.size());
+  l.add_products(l.ports(), x_, of_parts_.data(), shares_.data());
   take_from_hub(l.ports().numbers);
   solve_hub(true);
-  {
-    const core::WriteArray b(part_rhs_.get());
-    l.add_columns(l.coupled(), *from_parts_, -1, all_hub_.data(), b.data());
-  }
-  solve_parts(true);
+  l.add_columns(l.coupled(), *from_parts_, -1, all_hub_.data(), of_parts_.data());
+  of_parts_ = solve_parts(of_parts_, true);
   give(x);
 }
 

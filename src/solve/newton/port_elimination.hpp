@@ -5,8 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "solve/newton/port_matrix.hpp"
-#include "whirl/core/gate.hpp"
+#include "solve/newton/part_factors.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/problem/system.hpp"
 
@@ -17,36 +16,23 @@ namespace whirl::solve {
 ///     [ A_pp  G   ] [ x_p ]   [ b_p ]     X = A_pp^-1 G
 ///     [ F     A_h ] [ x_h ] = [ b_h ]     (A_h - F X) x_h = b_h - F A_pp^-1 b_p,   x_p = A_pp^-1 b_p - X x_h
 ///
-/// A_pp is solved by a KSP with prefix "parts_", what is left on the hub by one with prefix "hub_", both by MUMPS. The
-/// parts' own inverses take the place of A_pp^-1 (one application of a PCSHELL in "parts_"; options may put a Krylov
-/// method around it, or take another preconditioner); the hub then goes to KLU, because it is asked for often, on the
-/// rank that holds most of it: the others lend their rows, such as a border's. With approximate inverses all of it is a
-/// preconditioner. A_pp has to be regular: films at given motions are. Without parts all is hub, which goes to KLU on a
-/// rank that holds it, and to MUMPS where it is spread. factorise() and the solves throw core::NotConverged, on all
-/// ranks, if a matrix is singular. All members are collective on the communicator of the matrix.
+/// A_pp^-1 are the parts' own inverses, or PartFactors. What is left on the hub is solved by a KSP with prefix "hub_":
+/// by KLU on the rank that holds most of it, to which the others lend their rows, such as a border's, and by MUMPS
+/// where it is spread. With approximate inverses all of it is a preconditioner. A_pp has to be regular: films at given
+/// motions are. Without parts all is hub. factorise() and the solves throw core::NotConverged, on all ranks, if a
+/// matrix is singular. All members are collective on the communicator of the matrix.
 class PortElimination {
 public:
-  static constexpr std::size_t most_parts = 63;  // a bit each, and one of the hub
-  /// Whether there are parts, and no more of them than this keeps apart.
-  [[nodiscard]] static bool serves(const std::vector<problem::Field>& fields) {
-    return problem::parts_of(fields).size() > 1 && keeps_apart(fields);
-  }
-  [[nodiscard]] static bool keeps_apart(const std::vector<problem::Field>& fields) {
-    return problem::parts_of(fields).size() <= 1 + most_parts;
-  }
   /// `fields`: the hub first, in local rows of the matrices to come; local rows in none of them belong to the hub.
   /// `inverse` of the parts may be null.
   explicit PortElimination(std::vector<problem::Field> fields, std::unique_ptr<problem::PartInverse> inverse = nullptr);
 
   /// `a` has the same pattern in every call.
   void factorise(Mat a);
-  /// The same of a matrix that is in its blocks already, which take no other values from here on; `a` is null if it is
-  /// not wanted.
-  void factorise(Mat a, const PortMatrix& blocks);
+  /// The same of a matrix that is in its blocks already.
+  void factorise(const PortMatrix& blocks);
   /// Of the parts alone, for solve_held().
-  void factorise_parts(Mat a, const PortMatrix& blocks);
-  /// Whether the parts are solved with what an assembled matrix holds of them: not by their own inverses alone.
-  [[nodiscard]] bool wants_matrix(const PortMatrix& blocks);
+  void factorise_parts(const PortMatrix& blocks);
   /// Whether one rank solves the hub, after the first factorise().
   [[nodiscard]] bool hub_alone() const { return hub_alone_; }
   /// The blocks of the matrix of factorise(a).
@@ -56,17 +42,16 @@ public:
   void solve(Vec rhs, Vec x);
   /// The same with the hub held: A_pp^-1 b_p, or what approximates it, and zeros.
   void solve_held(Vec rhs, Vec x);
-  /// Of matrices whose parts are solved exactly, or by a preconditioner with a transpose.
+  /// Of matrices whose parts are solved exactly.
   void solve_transposed(Vec rhs, Vec x);
 
 private:
   void make_solvers();
-  void make_part_solver();
-  void solve_columns(const PortMatrix& blocks);
   void form_hub(const PortMatrix& blocks);
   void take(Vec whole);
   void give(Vec whole) const;
-  void solve_parts(bool transposed);
+  /// A_pp^-1 of columns, or its transpose.
+  [[nodiscard]] Eigen::MatrixXd solve_parts(const Eigen::MatrixXd& right, bool transposed);
   void solve_hub(bool transposed);
   /// Makes room for what this rank takes from so many rows of the hub.
   void clear_shares(std::size_t rows);
@@ -84,18 +69,17 @@ private:
   std::shared_ptr<const PortLayout> layout_;
   std::unique_ptr<PortMatrix> blocks_;  // of factorise(a)
   bool any_ = false;                    // there are parts
-  bool by_inverse_ = false;             // parts by one application of the inverse, without a matrix
   bool hub_alone_ = false;              // the hub is solved by one rank, which holds most of it,
   bool hub_once_ = false;               // by its factors alone: a KSP would look for its options in every solve
   int leader_ = 0;                      // this rank
   PetscInt lent_ = 0;                   // rows of the hub on other ranks
-  core::Matrix parts_, schur_;          // A_pp, A_h - F X
-  core::Vector part_rhs_, part_answer_, hub_rhs_, hub_answer_;
-  core::LinearSolver part_solver_, hub_solver_;
-  Eigen::MatrixXd x_;                                  // X [parts x colours]
+  std::unique_ptr<PartFactors<double>> factors_;  // where there is no inverse
+  core::Matrix schur_;                            // A_h - F X
+  core::Vector hub_rhs_, hub_answer_;
+  core::LinearSolver hub_solver_;
+  Eigen::MatrixXd x_, of_parts_;                       // X [parts x colours]; x_p [parts x 1]
   std::shared_ptr<const Eigen::MatrixXd> from_parts_;  // F^T of the blocks
   Eigen::VectorXd shares_, own_hub_, all_hub_;         // work space: of one rank; its rows of the hub; the hub's answer
-  std::unique_ptr<core::Gate> gate_;
 };
 
 }  // namespace whirl::solve

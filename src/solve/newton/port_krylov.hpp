@@ -5,6 +5,7 @@
 #include <string>
 
 #include "solve/newton/port_elimination.hpp"
+#include "whirl/core/gate.hpp"
 
 namespace whirl::solve {
 

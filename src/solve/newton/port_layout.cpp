@@ -15,6 +15,11 @@ using Eigen::VectorXd;
 
 namespace {
 
+// That hold a bit for each part; one where there are none.
+std::size_t words_of(std::size_t parts) {
+  return parts / 64 + 1;
+}
+
 std::vector<PetscInt> offsets_of(MPI_Comm comm, PetscInt local) {
   std::vector<PetscInt> all(static_cast<std::size_t>(core::size_of(comm)) + 1, 0);
   MPI_Allgather(&local, 1, MPIU_INT, all.data() + 1, 1, MPIU_INT, comm);
@@ -211,15 +216,22 @@ void PortLayout::place(const Scan& scan) {
   shared_.setZero(whole_hub() + static_cast<Index>(coupled_.numbers.size()));
 }
 
-PortLayout::Coloured::Coloured(const std::vector<std::uint64_t>& seen, std::size_t parts) {
-  std::vector<std::uint64_t> used;
-  colour.assign(seen.size(), -1);
-  for (std::size_t c = 0; c < seen.size(); ++c) {
-    if (seen[c] == 0) continue;
-    const auto free = std::find_if(used.begin(), used.end(), [&](std::uint64_t u) { return (u & seen[c]) == 0; });
-    colour[c] = static_cast<int>(free - used.begin());
-    if (free == used.end()) used.push_back(0);
-    used[static_cast<std::size_t>(colour[c])] |= seen[c];
+PortLayout::Coloured::Coloured(std::span<const std::uint64_t> seen, std::size_t parts) {
+  const std::size_t words = words_of(parts);
+  std::vector<std::vector<std::uint64_t>> used;  // by the numbers of a colour
+  colour.assign(seen.size() / words, -1);
+  for (std::size_t c = 0; c < colour.size(); ++c) {
+    const auto bits = seen.subspan(c * words, words);
+    if (std::ranges::all_of(bits, [](std::uint64_t word) { return word == 0; })) continue;
+    const auto free = std::ranges::find_if(used, [&](const auto& u) {
+      for (std::size_t k = 0; k < words; ++k)
+        if ((u[k] & bits[k]) != 0) return false;
+      return true;
+    });
+    const auto at_colour = static_cast<std::size_t>(free - used.begin());
+    colour[c] = static_cast<int>(at_colour);
+    if (free == used.end()) used.emplace_back(words, 0);
+    for (std::size_t k = 0; k < words; ++k) used[at_colour][k] |= bits[k];
     numbers.push_back(static_cast<PetscInt>(c));
   }
   colours = static_cast<int>(used.size());
@@ -227,64 +239,28 @@ PortLayout::Coloured::Coloured(const std::vector<std::uint64_t>& seen, std::size
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const auto c = static_cast<std::size_t>(numbers[k]);
     for (std::size_t p = 0; p < parts; ++p)
-      if (seen[c] >> p & 1) at[p][static_cast<std::size_t>(colour[c])] = static_cast<int>(k);
+      if (seen[c * words + p / 64] >> p % 64 & 1) at[p][static_cast<std::size_t>(colour[c])] = static_cast<int>(k);
   }
-}
-
-PortLayout::Owner PortLayout::owner_of(PetscInt column) const {
-  const auto rank = static_cast<std::size_t>(std::upper_bound(part_offsets_.begin(), part_offsets_.end(), column) -
-                                             part_offsets_.begin() - 1);
-  const PetscInt first = part_offsets_[rank];
-  const auto ends = all_part_ends_.begin() + static_cast<std::ptrdiff_t>(rank * part_ends_.size());
-  const auto part =
-      std::upper_bound(ends, ends + static_cast<std::ptrdiff_t>(part_ends_.size()), column - first) - ends;
-  return {static_cast<PetscMPIInt>(rank), first, part_offsets_[rank + 1] - first, static_cast<std::size_t>(part)};
-}
-
-void PortLayout::add_products(const Coloured& of, const MatrixXd& columns, const double* v, double* sums) const {
-  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
-    few_.noalias() = columns.middleRows(begin, rows).transpose() * Eigen::Map<const VectorXd>(v + begin, rows);
-    for (std::size_t c = 0; c < of.at[part].size(); ++c)
-      if (const int k = of.at[part][c]; k >= 0) sums[k] += few_(static_cast<Index>(c));
-  });
-}
-
-void PortLayout::add_columns(const Coloured& of, const MatrixXd& columns, double sign, const double* hub,
-                             double* v) const {
-  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
-    few_.setZero(columns.cols());
-    for (std::size_t c = 0; c < of.at[part].size(); ++c)
-      if (const int k = of.at[part][c]; k >= 0)
-        few_(static_cast<Index>(c)) = sign * hub[of.numbers[static_cast<std::size_t>(k)]];
-    Eigen::Map<VectorXd>(v + begin, rows).noalias() += columns.middleRows(begin, rows) * few_;
-  });
-}
-
-void PortLayout::add_products(const MatrixXd& from, const MatrixXd& to, MatrixXd& sums) const {
-  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
-    const MatrixXd all = from.middleRows(begin, rows).transpose() * to.middleRows(begin, rows);
-    for (std::size_t r = 0; r < coupled_.at[part].size(); ++r)
-      for (std::size_t c = 0; c < ports_.at[part].size(); ++c)
-        if (const int row = coupled_.at[part][r], column = ports_.at[part][c]; row >= 0 && column >= 0)
-          sums(row, column) += all(static_cast<Index>(r), static_cast<Index>(c));
-  });
 }
 
 void PortLayout::find_ports(const Scan& scan) {
   const auto n = static_cast<std::size_t>(whole_hub());
-  std::vector<std::uint64_t> seen(2 * n, 0);  // parts that see an unknown of the hub, then those that a row of it sees
+  const std::size_t words = words_of(part_ends_.size());
+  // Parts that see an unknown of the hub, then those that a row of it sees.
+  std::vector<std::uint64_t> seen(2 * n * words, 0);
+  const auto mark = [&](std::size_t number, std::size_t part) {
+    seen[number * words + part / 64] |= std::uint64_t{1} << part % 64;
+  };
   for (const Scan::Entry& e : scan.list) {
-    if (e.row >= 0 && e.column < 0) {
-      const auto part = std::upper_bound(part_ends_.begin(), part_ends_.end(), e.row) - part_ends_.begin();
-      seen[static_cast<std::size_t>(-1 - e.column)] |= std::uint64_t{1} << part;
-    }
-    if (e.row < 0 && e.column >= 0)
-      seen[n + static_cast<std::size_t>(-1 - e.row)] |= std::uint64_t{1} << owner_of(e.column).part;
+    if (e.row >= 0 && e.column < 0)
+      mark(static_cast<std::size_t>(-1 - e.column),
+           static_cast<std::size_t>(std::ranges::upper_bound(part_ends_, e.row) - part_ends_.begin()));
+    if (e.row < 0 && e.column >= 0) mark(n + static_cast<std::size_t>(-1 - e.row), owner_of(e.column).part);
   }
-  MPI_Allreduce(MPI_IN_PLACE, seen.data(), static_cast<int>(2 * n), MPI_UINT64_T, MPI_BOR, comm_);
-  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(n);
-  ports_ = Coloured({seen.begin(), middle}, part_ends_.size());
-  coupled_ = Coloured({middle, seen.end()}, part_ends_.size());
+  MPI_Allreduce(MPI_IN_PLACE, seen.data(), static_cast<int>(seen.size()), MPI_UINT64_T, MPI_BOR, comm_);
+  const std::span<const std::uint64_t> all = seen;
+  ports_ = Coloured(all.first(n * words), part_ends_.size());
+  coupled_ = Coloured(all.subspan(n * words), part_ends_.size());
 }
 
 // A_pp by pieces of diagonals, so that products are loops over arrays. Short gaps are filled with zeros.
@@ -326,6 +302,7 @@ void PortLayout::place_parts(const Scan& scan) {
   };
   cut(own, pieces_);
   cut(other, ghost_pieces_);
+  ghost_columns_ = ghosts;
   part_vector_ = core::make_vector(comm_, parts(), PETSC_DETERMINE);
   ghosts_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(ghosts.size()), PETSC_DETERMINE);
   core::IndexSet from;
@@ -363,25 +340,6 @@ void PortLayout::place_couplings(const Scan& scan) {
   check(PetscSFCreate(comm_, to_f_.put()));
   check(PetscSFSetGraph(to_f_.get(), parts() * width, count, nullptr, PETSC_COPY_VALUES, to.data(), PETSC_COPY_VALUES));
   check(PetscSFSetUp(to_f_.get()));
-}
-
-void PortLayout::take(const double* whole, double* parts, double* hub) const {
-  for (const Run& r : runs_) std::copy_n(whole + r.whole, r.count, (r.part ? parts : hub) + r.at);
-}
-
-void PortLayout::give(const double* parts, const double* hub, double* whole) const {
-  for (const Run& r : runs_) std::copy_n((r.part ? parts : hub) + r.at, r.count, whole + r.whole);
-}
-
-void PortLayout::share(const double* hub, VectorXd& all) const {
-  const PetscInt n = whole_hub();
-  if (core::size_of(comm_) > 1) {
-    all.head(n).setZero();
-    std::copy_n(hub, this->hub(), all.data() + first_of_hub());
-    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, comm_);
-  } else {
-    std::copy_n(hub, n, all.data());
-  }
 }
 
 }  // namespace whirl::solve

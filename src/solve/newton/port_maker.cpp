@@ -6,7 +6,7 @@
 namespace whirl::solve {
 
 std::unique_ptr<PortMaker> PortMaker::make(problem::System& system) {
-  if (!PortElimination::serves(system.fields())) return nullptr;
+  if (problem::parts_of(system.fields()).size() < 2) return nullptr;
   return std::unique_ptr<PortMaker>(new PortMaker(system));
 }
 
@@ -14,7 +14,7 @@ std::shared_ptr<PortElimination> PortMaker::unused(bool by_inverse) {
   if (!by_inverse) return std::make_shared<PortElimination>(system_.fields());
   for (const auto& e : made_)
     if (e.use_count() == 1) return e;
-  auto inverse = inverses_ ? system_.make_part_inverse() : nullptr;
+  auto inverse = inverses_ ? own_inverse(system_) : nullptr;
   inverses_ = inverse != nullptr;
   return made_.emplace_back(std::make_shared<PortElimination>(system_.fields(), std::move(inverse)));
 }
@@ -26,15 +26,15 @@ std::shared_ptr<const PortMatrix> PortMaker::blocks(Mat a) {
   return out;
 }
 
-std::shared_ptr<PortElimination> PortMaker::eliminate(Mat a, const PortMatrix& blocks, double angle, Vec x, Vec xdot,
+std::shared_ptr<PortElimination> PortMaker::eliminate(const PortMatrix& blocks, double angle, Vec x, Vec xdot,
                                                       double own, bool held) {
   std::shared_ptr<PortElimination> out = unused(own != 0);
   if (out->inverse()) out->inverse()->set({angle, x, xdot}, own, 1);
   try {
     if (held)
-      out->factorise_parts(a, blocks);
+      out->factorise_parts(blocks);
     else
-      out->factorise(a, blocks);
+      out->factorise(blocks);
   } catch (const core::NotConverged&) {
     core::agree(system_.comm(), [] { throw core::DomainError("the parts in a stage are singular"); });
   }

@@ -12,17 +12,17 @@ namespace whirl::solve {
 /// all offer them, else by MUMPS. Collective.
 class PortMaker {
 public:
-  /// Null if the system has no parts that elimination keeps apart.
+  /// Null if the system has no parts.
   static std::unique_ptr<PortMaker> make(problem::System& system);
 
   /// The blocks of `a`, a Jacobian of the system, scaled.
   [[nodiscard]] std::shared_ptr<const PortMatrix> blocks(Mat a);
-  /// Of `a` = dF/d(dx/dt) + own dF/dx with its `blocks`, scaled, at (angle, x, xdot) in SI; own = 0 never takes the
+  /// Of dF/d(dx/dt) + own dF/dx in its `blocks`, scaled, at (angle, x, xdot) in SI; own = 0 never takes the
   /// parts' inverses, which may know nothing of such a matrix. With `held` only of the parts, for
   /// PortElimination::solve_held(). What nobody holds any more is used again. Throws core::DomainError, on all ranks,
   /// if a part is singular.
-  [[nodiscard]] std::shared_ptr<PortElimination> eliminate(Mat a, const PortMatrix& blocks, double angle, Vec x,
-                                                           Vec xdot, double own, bool held = false);
+  [[nodiscard]] std::shared_ptr<PortElimination> eliminate(const PortMatrix& blocks, double angle, Vec x, Vec xdot,
+                                                           double own, bool held = false);
   /// Of the blocks; null before the first of them.
   [[nodiscard]] const PortLayout* layout() const { return layout_.get(); }
 

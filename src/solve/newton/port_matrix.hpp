@@ -2,6 +2,7 @@
 // A matrix of a hub and parts on its ports in blocks.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -42,9 +43,31 @@ public:
   [[nodiscard]] const std::vector<PetscInt>& hub_offsets() const { return hub_offsets_; }
   [[nodiscard]] const core::IndexSet& part_rows() const { return part_rows_; }
 
+  [[nodiscard]] std::size_t n_parts() const { return part_ends_.size(); }
+  /// Rows of a part: the first of those here among the rows of all parts here, how many stand here, on lower ranks, and
+  /// on all ranks; whether one rank has all of them.
+  struct PartRows {
+    PetscInt first, count, before, states;
+    bool alone;
+  };
+  [[nodiscard]] PartRows part(std::size_t p) const;
+  /// The entries of A_pp in the rows of part p here: row and column among the part's states on all ranks, and where
+  /// PortMatrix::of_parts() has the value.
+  struct PartEntry {
+    PetscInt row, column;
+    std::size_t value;
+  };
+  [[nodiscard]] std::vector<PartEntry> entries_of(std::size_t p) const;
+
   /// Entries of a vector of the matrix to those of parts and hub on this rank, and back.
-  void take(const double* whole, double* parts, double* hub) const;
-  void give(const double* parts, const double* hub, double* whole) const;
+  template <class T>
+  void take(const T* whole, T* parts, T* hub) const {
+    for (const Run& r : runs_) std::copy_n(whole + r.whole, r.count, (r.part ? parts : hub) + r.at);
+  }
+  template <class T>
+  void give(const T* parts, const T* hub, T* whole) const {
+    for (const Run& r : runs_) std::copy_n((r.part ? parts : hub) + r.at, r.count, whole + r.whole);
+  }
   /// The hub's entries of all ranks to all [whole_hub], and the sum over the ranks of what `all` holds behind them.
   /// Collective.
   void share(const double* hub, Eigen::VectorXd& all) const;
@@ -56,8 +79,8 @@ public:
     int colours = 0;
 
     Coloured() = default;
-    /// `seen` [hub]: bits of the parts.
-    Coloured(const std::vector<std::uint64_t>& seen, std::size_t parts);
+    /// `seen`: for each number in the hub the parts, a bit each in whole words.
+    Coloured(std::span<const std::uint64_t> seen, std::size_t parts);
   };
   /// Hub unknowns that parts see, and hub rows that see parts.
   [[nodiscard]] const Coloured& ports() const { return ports_; }
@@ -106,10 +129,14 @@ private:
   [[nodiscard]] Numbers numbers() const;
   void place(const Scan& scan);
   [[nodiscard]] Owner owner_of(PetscInt column) const;
+  /// Rows of part p on a rank.
+  [[nodiscard]] PetscInt count_of(std::size_t rank, std::size_t p) const;
   void number_rows(const std::vector<problem::Field>& fields);
   void find_ports(const Scan& scan);
   void place_parts(const Scan& scan);
   void place_couplings(const Scan& scan);
+  /// States of parts on other ranks that rows here see, of x [parts]. Collective.
+  [[nodiscard]] core::ReadArray to_ghosts(const double* x) const;
 
   MPI_Comm comm_;
   PetscInt local_ = 0;
@@ -127,6 +154,7 @@ private:
   std::vector<PetscInt> f_sources_;             // entries of F on this rank
   core::StarForest to_f_;                       // from these to the columns F^T, wherever they stand
   core::Scatter to_ghosts_;
+  std::vector<PetscInt> ghost_columns_;                           // among the parts' rows of all ranks
   core::Vector part_vector_, ghosts_;                             // work space of the ghosts
   mutable Eigen::VectorXd x_, y_, hub_x_, hub_y_, shared_, few_;  // and of products
 };
@@ -143,10 +171,14 @@ public:
   void scale(Vec rows, Vec columns);
   /// y = A x, of this rank's rows. Collective.
   void multiply(const double* x, double* y) const;
+  /// y = A_pp x, of this rank's rows of the parts. Collective.
+  void multiply_parts(const double* x, double* y) const;
   [[nodiscard]] const std::shared_ptr<const PortLayout>& layout() const { return layout_; }
   /// G [parts x colours], F^T [parts x coupled colours].
   [[nodiscard]] const Eigen::MatrixXd& to_parts() const { return g_; }
   [[nodiscard]] std::shared_ptr<const Eigen::MatrixXd> from_parts() const { return f_; }
+  /// A_pp's entries (PortLayout::entries_of()).
+  [[nodiscard]] const std::vector<double>& of_parts() const { return values_; }
   /// Calls f(row, column, value) for the entries of A_h in this rank's rows; numbers in the hub.
   template <class F>
   void for_hub(F&& f) const {

@@ -135,7 +135,7 @@ private:
     const auto blocks = maker_->blocks(a);
     if (!krylov_) krylov_ = std::make_unique<PortKrylov>(*maker_->layout(), "stage_");
     std::shared_ptr<PortElimination> by = own != 0 ? similar_ : nullptr;
-    if (!by) by = maker_->eliminate(a, *blocks, angle, point_.x(), point_.xdot(), own);
+    if (!by) by = maker_->eliminate(*blocks, angle, point_.x(), point_.xdot(), own);
     if (own != 0) similar_ = by;
     return std::make_shared<Inverse>(
         Inverse{[this, blocks, by](Ref<MatrixXd> y, double tolerance) {

@@ -26,9 +26,7 @@ struct SpreadCollocationOptions : NewtonPicardOptions {
 /// SpreadInterval.
 class SpreadCollocation final : public SpreadCycle {
 public:
-  /// An elimination keeps so many parts apart.
-  static constexpr std::size_t most_parts = 63;
-  /// `system` outlives this and has parts that an elimination keeps apart, at least one; core::Bug of others.
+  /// `system` outlives this and has parts; core::Bug of others.
   SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options, std::vector<double> mesh);
   /// The same in groups of ranks that share the intervals; `system` is that of this group.
   SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options, std::vector<double> mesh,

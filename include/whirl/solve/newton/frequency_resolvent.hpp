@@ -14,6 +14,9 @@ namespace whirl::solve {
 
 class FrequencyHub;
 class FrequencyInverse;
+class PortMatrix;
+template <class Scalar>
+class PartFactors;
 
 /// What a core::NotConverged says where the matrix is singular.
 inline constexpr const char* singular_at_frequency =
@@ -108,15 +111,12 @@ public:
 
 private:
   struct Coupled;
-  struct Places;
   /// Whether parts are solved by inverses of their own, not as matrices.
   [[nodiscard]] bool eliminates_by_inverse() const { return inverse_ || iterated_; }
-  /// One pass of the entries of dF/dx or dF/d(dx/dt): the system's own list, or one made of its assembled matrix.
-  void list(bool rates);
-  /// Takes the values of a and b; with `factors` also the entries of every A_i, to factorise it.
-  void take_entries(bool factors);
-  /// Sorts the places of the entries: hub, couplings, and `own` ones of the parts. Their order never changes.
-  void sort_places(bool own);
+  /// Hub, ports and couplings of the layout, once.
+  void find_ports();
+  /// The hub's a and b of all ranks.
+  void gather_hub();
   /// A_i of all parts as matrices, where they are not made yet.
   void assemble() const;
   /// Rows and columns of the border: 1 or 0.
@@ -127,15 +127,15 @@ private:
   /// evaluate() with the border of factorise() among ports and forces.
   [[nodiscard]] Transfers eliminate(Complex lambda, bool slopes);
   /// A_i^-1 G_i, and its slopes, of all parts at once.
-  void eliminate_by_inverse(bool slopes);
+  void eliminate_together(bool slopes);
   /// `columns(part)` of all parts below each other, this rank's rows.
   template <class F>
   [[nodiscard]] Eigen::MatrixXcd together(F&& columns) const;
+  /// b of the parts times such columns.
+  [[nodiscard]] Eigen::MatrixXcd rates_of_parts(const Eigen::MatrixXcd& columns) const;
   /// A_i^-1 of such columns, or A_i^-* by factors. Throws core::NotConverged if the parts are singular or iterations
   /// end before the tolerance.
   [[nodiscard]] Eigen::MatrixXcd solve_parts(const Eigen::MatrixXcd& right, bool adjoint);
-  /// The same of one part by its factors. They are made if they are not at hand; those of other large parts end then.
-  [[nodiscard]] Eigen::MatrixXcd solve_part(Coupled& part, const Eigen::MatrixXcd& right, bool adjoint);
   /// This rank's rows of A^-1 r or A^-* r; `corner` is the border's entry of both.
   [[nodiscard]] ComplexVector solve_here(const ComplexVector& r, Complex& corner, bool adjoint);
   [[nodiscard]] ComplexVector solve_whole(const ComplexVector& r, bool adjoint);
@@ -145,17 +145,19 @@ private:
   problem::System& system_;
   std::unique_ptr<problem::PartInverse> inverse_;  // an exact one, or null
   std::unique_ptr<FrequencyInverse> iterated_;     // in its place where inverses are approximate
+  std::unique_ptr<PartFactors<Complex>> factors_;  // where there is neither, and for adjoints
+  bool factorised_ = false;                        // at lambda_
   core::Vector x_, rest_, state_scale_, row_scale_;
-  PetscInt begin_ = 0;            // first row of this rank
-  mutable core::Matrix jx_, jd_;  // where A_i are wanted as matrices
+  PetscInt begin_ = 0;  // first row of this rank
   problem::Entries entries_;
-  std::unique_ptr<Places> places_;
+  core::Matrix jacobian_;                        // of a system that lists no entries
+  std::unique_ptr<PortMatrix> at_rest_, rates_;  // a and b, scaled
+  std::vector<std::size_t> hub_places_;          // of the hub's entries here among those of all ranks
   std::vector<std::unique_ptr<Coupled>> parts_;
   std::vector<Ports> ports_;
   std::vector<PetscInt> hub_numbers_;  // of the hub's states among all
   std::unique_ptr<FrequencyHub> hub_;
   std::vector<double> hub_scale_, hub_row_scale_;
-  bool own_taken_ = false;  // entries of A_i are at hand
   Complex lambda_;
   ComplexVector b_, c_;  // the border
 };
