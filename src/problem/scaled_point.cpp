@@ -59,6 +59,7 @@ void ScaledPoint::refresh() {
     scale(structure_->l1(), rows, columns, blocks.l1);
     scale(structure_->b(), rows, forces, blocks.b);
     scale(structure_->c(), inputs, columns, blocks.c);
+    blocks.kinematic = system_.kinematic();
   };
   if (sparse_)
     all(thin_);
@@ -203,7 +204,7 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
   jx.setZero(size(), size());
   jxdot.setZero(size(), size());
   DenseBlocks made;
-  if (sparse_) made = {MatrixXd(thin_.l1), MatrixXd(thin_.l0), MatrixXd(thin_.b), MatrixXd(thin_.c)};
+  if (sparse_) made = {MatrixXd(thin_.l1), MatrixXd(thin_.l0), MatrixXd(thin_.b), MatrixXd(thin_.c), {}};
   const DenseBlocks& all = sparse_ ? made : dense_;
   jx.topLeftCorner(n, n) = all.l0;
   jx.topLeftCorner(n, n).noalias() -= all.b * (at.films.d_inputs * all.c);

@@ -68,7 +68,7 @@ void parts(system::RotorSystem& s, solve::CycleProblem& p, Vec u, int runs) {
   const Eigen::MatrixXd l1 = s.structure()->l1(), l0 = s.structure()->l0(), b = s.structure()->b(),
                         c = s.structure()->c();
   row("factorisation of the linear part (on every rank)", bench::least(MPI_COMM_WORLD, runs, [&] {
-        const solve::LinearPart part(p.scheme(), cycle.period / kIntervals, {l1, l0, b, c});
+        const solve::LinearPart part(p.scheme(), cycle.period / kIntervals, {l1, l0, b, c, s.kinematic()});
       }));
   core::Vector v = core::duplicate(u), y = core::duplicate(u);
   core::check(VecCopy(u, v.get()));

@@ -123,6 +123,7 @@ public:
     force(angle, -1, fa.data());
   }
   [[nodiscard]] problem::BlockStructure* structure() override { return &structure_; }
+  [[nodiscard]] std::vector<problem::KinematicRow> kinematic() const override { return rotor_.kinematic(); }
   void scales(Vec state, Vec residual) override { rotor_.scales(state, residual); }
   [[nodiscard]] VectorXd equilibrium() {
     core::Vector x = system::static_guess(rotor_);

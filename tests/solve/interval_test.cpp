@@ -14,8 +14,8 @@ double apart(const MatrixXd& a, const MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() / std::max(1.0, b.cwiseAbs().maxCoeff());
 }
 
-// `pairs` rows are of the form alpha x_a' + beta x_b = 0 that the linear part eliminates; the last of three is not, for
-// its x_a' occurs in another row too.
+// `pairs` rows are of the form alpha x_a' + beta x_b = 0, of which the linear part eliminates those that are named to
+// it; the last of three may not be, for its x_a' occurs in another row too.
 void compare(int pairs, int eliminated) {
   std::srand(7);
   const int n = 7, r = 2, w = 3;
@@ -32,6 +32,8 @@ void compare(int pairs, int eliminated) {
         l0(2 * e, 2 * e + 1) = -2;
       }
       if (pairs == 3) l1(6, 4) = 0.5;
+      std::vector<problem::KinematicRow> kinematic;
+      for (int e = 0; e < eliminated; ++e) kinematic.push_back({2 * e, 2 * e, 2 * e + 1});
       std::vector<MatrixXd> tangents, jx, jxdot;
       for (int j = 0; j < m; ++j) {
         tangents.push_back(MatrixXd::Random(r, w));
@@ -40,7 +42,8 @@ void compare(int pairs, int eliminated) {
       }
       const double length = 0.3;
       const auto dense = solve::make_dense_interval(scheme, length, jx, jxdot);
-      const auto part = std::make_shared<solve::LinearPart>(scheme, length, problem::DenseBlocks{l1, l0, b, c});
+      const auto part =
+          std::make_shared<solve::LinearPart>(scheme, length, problem::DenseBlocks{l1, l0, b, c, kinematic});
       EXPECT_EQ(part->eliminated(), eliminated);
       const auto low = solve::make_low_rank_interval(part, tangents);
 

@@ -40,6 +40,7 @@ std::unique_ptr<test::StructuredSystem> chain(bool forced) {
   for (int i = 0; i < masses; ++i) {
     blocks.l1(2 * i, 2 * i) = 1 + 0.1 * i;
     blocks.l0(2 * i, 2 * i + 1) = -(1 + 0.1 * i);
+    blocks.kinematic.push_back({2 * i, 2 * i, 2 * i + 1});
     blocks.l1(2 * i + 1, 2 * i + 1) = 1 + 0.2 * i;
     for (const int k : {i - 1, i + 1}) {
       if (k < 0 || k >= masses) continue;

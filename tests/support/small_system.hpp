@@ -116,6 +116,7 @@ private:
 /// The blocks of F = L1 xdot + (L0 + p L0p) x - load(angle, p) - B f(C x, p).
 struct Blocks {
   Eigen::MatrixXd l1, l0, l0p, b, c;
+  std::vector<problem::KinematicRow> kinematic;
 };
 
 /// The same formula told twice: as F, and as Structure. `load(double angle, T p)` and `forces(Column<T> w, T p)` return
@@ -131,11 +132,13 @@ public:
                                        p * (blocks.l0p.template cast<T>() * x) - load(angle, p) -
                                        blocks.b.template cast<T>() * forces(w, p));
                     }),
-        structure_(*this, blocks) {
+        structure_(*this, blocks),
+        kinematic_(blocks.kinematic) {
     structure_.load_ = [load](double angle, Complex p) { return load(angle, p); };
     structure_.forces_ = [forces](const Eigen::VectorXcd& w, Complex p) { return forces(w, p); };
   }
   [[nodiscard]] problem::BlockStructure* structure() override { return &structure_; }
+  [[nodiscard]] std::vector<problem::KinematicRow> kinematic() const override { return kinematic_; }
 
 private:
   class Told : public problem::BlockStructure {
@@ -183,6 +186,7 @@ private:
     std::vector<problem::OwnStates> none_;
   };
   Told structure_;
+  std::vector<problem::KinematicRow> kinematic_;
 };
 
 }  // namespace whirl::test

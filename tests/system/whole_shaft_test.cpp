@@ -131,7 +131,7 @@ TEST(WholeShaft, EigenvaluesNextToThoseOfReducedShafts) {
     problem::Films films;
     s.structure()->films(s.structure()->c() * Eigen::Map<const Eigen::VectorXd>(s.gather(x.get()).data(), s.size()),
                          nullptr, nullptr, true, films);
-    found[k] = solve::nearest_eigenvalues(*whole.structure(), films.d_inputs, starts);
+    found[k] = solve::nearest_eigenvalues(whole, films.d_inputs, starts);
     errors[k] = (found[k] - starts).abs().maxCoeff();
     for (Eigen::Index i = 0; i < 4; ++i) EXPECT_LE(std::abs(found[k](i) - reference[i]), 0.05) << reference[i];
   }

@@ -18,8 +18,8 @@ inline constexpr double call = 4.5e6;
 /// An exchange with a neighbour, 5 us.
 inline constexpr double message = 1.65e5;
 
-/// Whether a dense matrix of so many states costs less than a sparse one of PETSc with so many entries: in a step in
-/// time with its factors, those of MUMPS where it is sparse, or in a product with one vector.
+/// Whether a dense matrix of so many states costs less than a sparse one of PETSc with so many entries. A step in time
+/// takes factors (MUMPS's where the matrix is sparse), a product takes the matrix alone.
 enum class Work { step, product };
 [[nodiscard]] bool dense_is_cheaper(Work work, std::int64_t states, std::int64_t entries);
 

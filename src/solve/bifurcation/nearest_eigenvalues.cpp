@@ -10,7 +10,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 // With y = (A + sigma L1)^-1 L1 x and A v = -lambda L1 v, the part along v grows by 1/(sigma - lambda).
-ArrayXcd nearest_eigenvalues(problem::BlockStructure& structure, const MatrixXd& tangents, const ArrayXcd& starts) {
+ArrayXcd nearest_eigenvalues(problem::System& system, const MatrixXd& tangents, const ArrayXcd& starts) {
+  core::require(system.structure() != nullptr, "a machine of blocks");
+  problem::BlockStructure& structure = *system.structure();
   core::require(structure.own().empty(), "the films have no own states");
   const Index n = structure.size(), lanes = starts.size();
   Pencil::Matrix held =
@@ -19,7 +21,7 @@ ArrayXcd nearest_eigenvalues(problem::BlockStructure& structure, const MatrixXd&
   // Beside the start, where the matrix is regular even if the start is an eigenvalue.
   const ArrayXcd shift = starts * (1 + 1e-9);
   Pencil pencil;
-  pencil.compute(structure.l1(), held, shift);
+  pencil.compute(structure.l1(), held, system.kinematic(), shift);
   const Pencil::Matrix rates = structure.l1().transpose();
   MatrixXd x(2 * lanes, n), y;
   for (Index s = 0; s < n; ++s) x.col(s).setConstant(1 + 0.5 * std::sin(0.7 * static_cast<double>(s)));

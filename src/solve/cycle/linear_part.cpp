@@ -32,22 +32,11 @@ MatrixXd along(const MatrixXd& a, const MatrixXd& z) {
   return out;
 }
 
-// The only column where a row is not zero, or -1.
-Index single(const MatrixXd& a, Index row) {
-  Index found = -1;
-  for (Index j = 0; j < a.cols(); ++j) {
-    if (a(row, j) == 0) continue;
-    if (found >= 0) return -1;
-    found = j;
-  }
-  return found;
-}
-
 }  // namespace
 
 LinearPart::LinearPart(const Scheme& sc, double len, problem::DenseBlocks blocks)
     : ThinPart(sc, len, std::move(blocks)) {
-  find_rates();
+  take_pairs();
   factorise();
   const Index m = scheme.degree;
   w00.resize(m * n, n);
@@ -64,36 +53,27 @@ LinearPart::LinearPart(const Scheme& sc, double len, problem::DenseBlocks blocks
   for (Index j = 0; j < m; ++j) inputs_free.middleRows(j * w, w) += scheme.value(j, 0) * c;
 }
 
-void LinearPart::find_rates() {
-  enum class Use { open, eliminated, kept };
-  std::vector<Use> use(static_cast<std::size_t>(n), Use::open);
-  const auto use_of = [&](Index state) -> Use& { return use[static_cast<std::size_t>(state)]; };
-  std::vector<Index> of;
-  std::vector<double> alpha, beta;
-  for (Index i = 0; i < n; ++i) {
-    const Index s = single(l1, i), v = single(l0, i);
-    if (s < 0 || v < 0 || s == v || use_of(s) != Use::open || use_of(v) == Use::eliminated ||
-        (l1.col(s).array() != 0).count() != 1) {
-      row_.push_back(i);
-      continue;
-    }
-    use_of(s) = Use::eliminated;
-    use_of(v) = Use::kept;
-    rate_row_.push_back(i);
-    rate_state_.push_back(s);
-    of.push_back(v);
-    alpha.push_back(l1(i, s));
-    beta.push_back(l0(i, v));
+void LinearPart::take_pairs() {
+  const auto pairs = static_cast<Index>(kinematic.size());
+  std::vector<bool> row_taken(static_cast<std::size_t>(n), false), state_taken = row_taken;
+  alpha_.resize(pairs);
+  beta_.resize(pairs);
+  for (Index e = 0; e < pairs; ++e) {
+    const auto& [row, state, rate] = kinematic[static_cast<std::size_t>(e)];
+    rate_row_.push_back(row);
+    rate_state_.push_back(state);
+    alpha_(e) = l1(row, state);
+    beta_(e) = l0(row, rate);
+    row_taken[static_cast<std::size_t>(row)] = state_taken[static_cast<std::size_t>(state)] = true;
   }
   std::vector<Index> place(static_cast<std::size_t>(n), 0);
-  for (Index s = 0; s < n; ++s) {
-    if (use_of(s) == Use::eliminated) continue;
-    place[static_cast<std::size_t>(s)] = static_cast<Index>(state_.size());
-    state_.push_back(s);
+  for (Index k = 0; k < n; ++k) {
+    if (!row_taken[static_cast<std::size_t>(k)]) row_.push_back(k);
+    if (state_taken[static_cast<std::size_t>(k)]) continue;
+    place[static_cast<std::size_t>(k)] = static_cast<Index>(state_.size());
+    state_.push_back(k);
   }
-  for (const Index v : of) rate_of_.push_back(place[static_cast<std::size_t>(v)]);
-  alpha_ = Map<const Eigen::ArrayXd>(alpha.data(), eliminated());
-  beta_ = Map<const Eigen::ArrayXd>(beta.data(), eliminated());
+  for (const problem::KinematicRow& k : kinematic) rate_of_.push_back(place[static_cast<std::size_t>(k.rate)]);
 }
 
 void LinearPart::factorise() {

@@ -69,7 +69,8 @@ void ModeComposition::compose(const Run& run) {
     const problem::ThinBlocks& k = *run.thin->blocks;
     Pencil::Matrix held = k.l0 - Pencil::Matrix(k.b * Pencil::Matrix(mean.sparseView()) * k.c);
     held.makeCompressed();
-    pencil_.compute(k.l1, held, modes_.lambda.segment(rank_ * modes_.lanes, modes_.lanes) / run.thin->period);
+    pencil_.compute(k.l1, held, k.kinematic,
+                    modes_.lambda.segment(rank_ * modes_.lanes, modes_.lanes) / run.thin->period);
   });
   find_receptances();
   find_border();

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Row = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 // y -= a x, complex, for each lane; a is shared by all columns.
 void subtract(const double* __restrict a, const double* __restrict x, double* __restrict y, Index lanes,
@@ -48,16 +47,6 @@ void subtract(double factor, const double* __restrict x, double* __restrict y, I
   for (Index k = 0; k < count; ++k) y[k] -= factor * x[k];
 }
 
-Index only_column(const Row& a, Index row) {
-  Index found = -1;
-  for (Row::InnerIterator it(a, row); it; ++it) {
-    if (it.value() == 0) continue;
-    if (found >= 0) return -1;
-    found = it.col();
-  }
-  return found;
-}
-
 std::vector<int> pattern_of(const Pencil::Matrix& a, std::vector<int> pattern) {
   pattern.insert(pattern.end(), a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1);
   pattern.insert(pattern.end(), a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros());
@@ -79,7 +68,8 @@ bool Pencil::same_pattern(const Matrix& l1, const Matrix& l0) const {
   return from == pattern_.size();
 }
 
-void Pencil::compute(const Matrix& l1, const Matrix& l0, const Eigen::ArrayXcd& lambda) {
+void Pencil::compute(const Matrix& l1, const Matrix& l0, const std::vector<problem::KinematicRow>& kinematic,
+                     const Eigen::ArrayXcd& lambda) {
   core::require(l1.isCompressed() && l0.isCompressed(), "a pencil wants compressed matrices");
   n_ = l1.rows();
   lanes_ = lambda.size();
@@ -87,32 +77,24 @@ void Pencil::compute(const Matrix& l1, const Matrix& l0, const Eigen::ArrayXcd& 
   lambda_ << lambda.real(), lambda.imag();
   square_.resize(2 * lanes_);
   square_ << lambda.square().real(), lambda.square().imag();
-  if (!same_pattern(l1, l0)) analyse(l1, l0);
+  if (!same_pattern(l1, l0)) analyse(l1, l0, kinematic);
   fill(l1, l0);
   factorise();
   if (!lu_.allFinite()) throw core::NotConverged("the linear part has a vanishing pivot at a time mode");
 }
 
-void Pencil::find_rates(const Matrix& l1, const Matrix& l0) {
-  const Row r1 = l1, r0 = l0;
-  enum class Use { open, kept, eliminated };
-  std::vector<Use> use(static_cast<std::size_t>(n_), Use::open);
-  std::vector<bool> rate(static_cast<std::size_t>(n_), false);
+void Pencil::take_pairs(const std::vector<problem::KinematicRow>& kinematic) {
+  std::vector<bool> row_taken(static_cast<std::size_t>(n_), false), state_taken = row_taken;
   rates_.clear();
-  for (Index i = 0; i < n_; ++i) {
-    const Index a = only_column(r1, i), b = only_column(r0, i);
-    if (a < 0 || b < 0 || a == b) continue;
-    if (use[static_cast<std::size_t>(a)] == Use::eliminated || use[static_cast<std::size_t>(b)] != Use::open) continue;
-    use[static_cast<std::size_t>(a)] = Use::kept;
-    use[static_cast<std::size_t>(b)] = Use::eliminated;
-    rate[static_cast<std::size_t>(i)] = true;
-    rates_.push_back({i, a, b, -1, 0, 0});
+  for (const auto& [row, state, rate] : kinematic) {
+    rates_.push_back({row, state, rate, -1, 0, 0});
+    row_taken[static_cast<std::size_t>(row)] = state_taken[static_cast<std::size_t>(rate)] = true;
   }
   row_.clear();
   state_.clear();
   for (Index i = 0; i < n_; ++i) {
-    if (!rate[static_cast<std::size_t>(i)]) row_.push_back(i);
-    if (use[static_cast<std::size_t>(i)] != Use::eliminated) state_.push_back(i);
+    if (!row_taken[static_cast<std::size_t>(i)]) row_.push_back(i);
+    if (!state_taken[static_cast<std::size_t>(i)]) state_.push_back(i);
   }
   kept_ = n_ - eliminated();
 }
@@ -158,9 +140,9 @@ void Pencil::find_slots(const Matrix& pattern) {
   }
 }
 
-void Pencil::analyse(const Matrix& l1, const Matrix& l0) {
+void Pencil::analyse(const Matrix& l1, const Matrix& l0, const std::vector<problem::KinematicRow>& kinematic) {
   pattern_ = pattern_of(l0, pattern_of(l1, {}));
-  find_rates(l1, l0);
+  take_pairs(kinematic);
   // Where rows and states stand among the kept ones, or which rate a state is: before and after ordering.
   std::vector<Index> row_place(static_cast<std::size_t>(n_), -1), state_place(row_place), rate_of(row_place);
   for (std::size_t e = 0; e < rates_.size(); ++e)

@@ -5,6 +5,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "whirl/problem/kinematic.hpp"
+
 namespace whirl::solve {
 
 /// Solves (L0 + lambda_k L1) x_k = y_k, L0 and L1 real [n x n], for complex lambda_k, k = 1..lanes.
@@ -16,14 +18,16 @@ namespace whirl::solve {
 ///
 /// is lambda^2 M + lambda C + K of a rotor. One minimum-degree ordering and one symbolic factorisation serve all k, and
 /// for all later matrices of the same pattern; each number of the LU is an array over k, which fills vector registers.
-/// There are no row exchanges: lightly damped parts of the shaft may cost some digits, which an iteration around gives
-/// back. Cost for n = 1500 of a shaft, 64 lanes: about 40 000 complex operations a lane to factorise, 12 000 to solve.
+/// There are no row exchanges: kinematic rows, which have no diagonal, have to be named, and lightly damped parts of
+/// the shaft may cost some digits, which an iteration around gives back. Cost for n = 1500 of a shaft, 64 lanes: about
+/// 40 000 complex operations a lane to factorise, 12 000 to solve.
 class Pencil {
 public:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// Throws core::NotConverged if a pivot vanishes.
-  void compute(const Matrix& l1, const Matrix& l0, const Eigen::ArrayXcd& lambda);
+  /// `kinematic` are rows of both. Throws core::NotConverged if a pivot vanishes.
+  void compute(const Matrix& l1, const Matrix& l0, const std::vector<problem::KinematicRow>& kinematic,
+               const Eigen::ArrayXcd& lambda);
   [[nodiscard]] Eigen::Index size() const { return n_; }
   [[nodiscard]] Eigen::Index lanes() const { return lanes_; }
   /// Number of states eliminated by rows of the form q' = v.
@@ -52,8 +56,8 @@ private:
     double value;
   };
 
-  void analyse(const Matrix& l1, const Matrix& l0);
-  void find_rates(const Matrix& l1, const Matrix& l0);
+  void analyse(const Matrix& l1, const Matrix& l0, const std::vector<problem::KinematicRow>& kinematic);
+  void take_pairs(const std::vector<problem::KinematicRow>& kinematic);
   void find_slots(const Matrix& pattern);
   void fill(const Matrix& l1, const Matrix& l0);
   void factorise();

@@ -21,7 +21,7 @@ public:
   void prepare() const {
     if (y.size() > 0) return;
     modes_ = interval_modes(scheme, length);
-    pencil_.compute(l1, l0, modes_.lambda);
+    pencil_.compute(l1, l0, kinematic, modes_.lambda);
     y = MatrixXd::Zero(scheme.degree * n, scheme.degree * r);
     for (Index j = 0; j < scheme.degree; ++j) y.block(j * n, j * r, n, r) = MatrixXd(b);
     solve(y);

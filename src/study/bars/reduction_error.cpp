@@ -32,7 +32,7 @@ std::vector<std::complex<double>> reduction_errors(const system::RotorSystem& sy
           reduced.structure()->c() * Eigen::Map<const Eigen::VectorXd>(state.data(), reduced.size()), nullptr, nullptr,
           true, films);
       const Eigen::Map<const Eigen::ArrayXcd> starts(values.data(), static_cast<Eigen::Index>(values.size()));
-      const Eigen::ArrayXcd errors = starts - solve::nearest_eigenvalues(*whole.structure(), films.d_inputs, starts);
+      const Eigen::ArrayXcd errors = starts - solve::nearest_eigenvalues(whole, films.d_inputs, starts);
       for (std::size_t k = 0; k < values.size(); ++k) {
         numbers[2 * k] = errors(static_cast<Eigen::Index>(k)).real();
         numbers[2 * k + 1] = errors(static_cast<Eigen::Index>(k)).imag();

@@ -106,8 +106,8 @@ private:
                                             const LocatedEvent& event, Vec u, Vec tangent,
                                             const NewtonOptions& options);
 
-/// The condition of an event with the given critical eigenvalue [1/s]; null for branch points. Those of cycles:
-/// PeriodicProblem::condition().
+/// The condition that holds at an event of equilibria with the given critical eigenvalue [1/s]; null for branch points.
+/// Cycles make theirs by PeriodicProblem::condition().
 [[nodiscard]] std::unique_ptr<Condition> condition_of(problem::System& system, EquilibriumProblem& problem, Event event,
                                                       std::complex<double> critical);
 

@@ -74,7 +74,7 @@ public:
   [[nodiscard]] Eigen::Index eliminated() const { return static_cast<Eigen::Index>(rate_row_.size()); }
 
 private:
-  void find_rates();
+  void take_pairs();
   void factorise();
 
   // Row i reads alpha x_a' + beta x_b: i, a, and the place of b among the kept states; all other rows and states.

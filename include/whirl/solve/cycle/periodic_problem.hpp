@@ -84,8 +84,8 @@ public:
 
   /// Whether it solves transposed equations, which conditions of bifurcations want.
   [[nodiscard]] virtual bool has_adjoint() const { return false; }
-  /// The condition of an event with the given critical multiplier; null without transposed equations, and for events
-  /// that have none.
+  /// The condition that holds at an event with the given critical multiplier. Null where the problem solves no
+  /// transposed equations, and for events without a condition.
   [[nodiscard]] virtual std::unique_ptr<Condition> condition(Event event, std::complex<double> critical);
 };
 
