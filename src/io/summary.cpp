@@ -16,281 +16,205 @@ namespace {
 constexpr std::array<const char*, 6> bifurcation_names = {"fold", "hopf",           "cyclic_fold",
                                                           "flip", "neimark_sacker", "branch_point"};
 
-Json to_json(const Bifurcation& b) {
-  Json j = {{"type", name_of(b.type)},
-            {"parameter", b.parameter},
-            {"value", number(b.value)},
-            {"unit", b.unit},
-            {"period_s", number(b.period_s)},
-            {"uncertainty", number(b.uncertainty)},
-            {"criticality", text_or_null(b.criticality)}};
-  if (!b.criticality_by.empty()) j["criticality_by"] = b.criticality_by;
-  if (!b.stable_side.empty()) j["stable_side"] = b.stable_side;
-  if (!b.born.empty()) j["born"] = b.born;
-  if (!b.sentence.empty()) j["sentence"] = b.sentence;
-  for (const auto& [name, value] : b.more) j[name] = number(value);
-  return j;
-}
-
-Bifurcation bifurcation(const Json& j) {
-  Bifurcation b;
-  for (const auto& [key, v] : j.items()) {
-    if (key == "type") {
-      const auto it = std::find(bifurcation_names.begin(), bifurcation_names.end(), v.get<std::string>());
-      if (it == bifurcation_names.end()) throw core::Error("unknown bifurcation type " + v.dump());
-      b.type = static_cast<BifurcationType>(it - bifurcation_names.begin());
-    } else if (key == "parameter") {
-      v.get_to(b.parameter);
-    } else if (key == "value") {
-      b.value = number(v);
-    } else if (key == "unit") {
-      v.get_to(b.unit);
-    } else if (key == "period_s") {
-      b.period_s = number(v);
-    } else if (key == "uncertainty") {
-      b.uncertainty = number(v);
-    } else if (key == "criticality") {
-      b.criticality = v.is_null() ? "" : v.get<std::string>();
-    } else if (key == "criticality_by") {
-      v.get_to(b.criticality_by);
-    } else if (key == "stable_side") {
-      v.get_to(b.stable_side);
-    } else if (key == "born") {
-      v.get_to(b.born);
-    } else if (key == "sentence") {
-      v.get_to(b.sentence);
-    } else {
-      b.more[key] = number(v);
-    }
-  }
-  return b;
-}
-
-Json to_json(const CodimensionTwo& c) {
-  Json j = {{"type", c.type},
-            {"parameter", c.parameter},
-            {"value", number(c.value.value)},
-            {"unit", c.value.unit},
-            {"second_parameter", c.second_parameter},
-            {"second_value", number(c.second_value.value)},
-            {"second_unit", c.second_value.unit},
-            {"second_value_uncertainty", number(c.uncertainty)}};
-  for (const auto& [name, value] : c.more) j[name] = number(value);
-  return j;
-}
-
-CodimensionTwo codimension_two(Json j) {
-  const auto take = [&j](const char* key) {
-    Json value = j.at(key);
-    j.erase(key);
-    return value;
-  };
-  CodimensionTwo c;
-  c.type = take("type");
-  c.parameter = take("parameter");
-  c.value = {number(take("value")), take("unit")};
-  c.second_parameter = take("second_parameter");
-  c.second_value = {number(take("second_value")), take("second_unit")};
-  c.uncertainty = number(take("second_value_uncertainty"));
-  for (const auto& [key, v] : j.items()) c.more[key] = number(v);
-  return c;
-}
-
-// The quantities of a peak, by name.
-using PeakQuantity = std::pair<const char*, Quantity PeakEntry::*>;
-constexpr std::array<PeakQuantity, 5> peak_quantities = {
-    PeakQuantity{"speed", &PeakEntry::speed}, PeakQuantity{"semi_major", &PeakEntry::semi_major},
-    PeakQuantity{"amplification_factor", &PeakEntry::amplification_factor},
-    PeakQuantity{"separation_margin", &PeakEntry::separation_margin},
-    PeakQuantity{"required_margin", &PeakEntry::required_margin}};
-
-Json to_json(const PeakEntry& p) {
-  Json j = {{"place", p.place}};
-  for (const auto& [name, which] : peak_quantities)
-    if (!(p.*which).unit.empty()) j[name] = quantity_to_json(p.*which);
-  if (!p.stability.empty()) j["stability"] = p.stability;
-  if (!p.verdict.empty()) j["verdict"] = p.verdict;
-  if (!p.notes.empty()) j["notes"] = p.notes;
-  return j;
-}
-
-PeakEntry peak(const Json& j) {
-  PeakEntry p;
-  p.place = j.at("place");
-  for (const auto& [name, which] : peak_quantities)
-    if (j.contains(name)) p.*which = quantity(j.at(name));
-  p.stability = j.value("stability", std::string());
-  p.verdict = j.value("verdict", std::string());
-  p.notes = j.value("notes", std::vector<std::string>());
-  return p;
-}
-
-Json to_json(const Service& s) {
-  Json facts = Json::array();
-  for (const ServiceFact& f : s.facts) {
-    Json j = {{"what", f.what}};
-    if (!f.place.empty()) j["place"] = f.place;
-    if (!f.value.unit.empty()) j.update(quantity_to_json(f.value));
-    if (!f.mark.empty()) j["mark"] = f.mark;
-    j["study"] = text_or_null(f.study);
-    facts.push_back(std::move(j));
-  }
-  Json j = quantity_to_json(s.speed);
-  j["facts"] = std::move(facts);
-  return j;
-}
-
-Service service(const Json& j) {
-  Service s;
-  s.speed = {number(j.at("value")), j.at("unit")};
-  for (const Json& f : j.at("facts")) {
-    ServiceFact& fact = s.facts.emplace_back();
-    fact.what = f.at("what");
-    fact.place = f.value("place", std::string());
-    if (f.contains("value"))
-      fact.value = {number(f.at("value")), f.at("unit"),
-                    others(f, {"what", "place", "value", "unit", "mark", "study"})};
-    fact.mark = f.value("mark", std::string());
-    fact.study = f.at("study").is_null() ? "" : f.at("study").get<std::string>();
-  }
-  return s;
-}
-
-Json numbers(const std::vector<double>& all) {
-  Json j = Json::array();
-  for (const double x : all) j.push_back(number(x));
-  return j;
-}
-
-std::vector<double> numbers(const Json& j) {
-  std::vector<double> all;
-  for (const Json& x : j) all.push_back(number(x));
-  return all;
-}
-
-Json to_json(const StudySummary& s);
-StudySummary study(const Json& j);
-
-void put_sweep(Json& j, const StudySummary& s) {
-  for (const VariantSummary& v : s.variants) {
-    Json changes = Json::object(), studies = Json::array();
-    for (const auto& [path, value] : v.changes) changes[path] = value;
-    for (const StudySummary& one : v.studies) studies.push_back(to_json(one));
-    j["variants"].push_back({{"name", v.name}, {"changes", std::move(changes)}, {"studies", std::move(studies)}});
-  }
-  for (const SweepColumn& c : s.columns)
-    j["columns"].push_back({{"name", c.name},
-                            {"unit", c.unit},
-                            {"values", numbers(c.values)},
-                            {"uncertainties", numbers(c.uncertainties)}});
-  for (const Trend& t : s.trends)
-    j["trends"].push_back({{"column", t.column},
-                           {"quantity", t.quantity},
-                           {"unit", t.unit},
-                           {"beside", t.beside},
-                           {"sign", t.sign},
-                           {"variants", t.variants},
-                           {"at", numbers(t.at)},
-                           {"difference", numbers(t.difference)},
-                           {"uncertainty", numbers(t.uncertainty)}});
-}
-
-void take_sweep(const Json& j, StudySummary& s) {
-  for (const Json& v : j.value("variants", Json::array())) {
-    VariantSummary& variant = s.variants.emplace_back();
-    variant.name = v.at("name");
-    for (const auto& [path, value] : v.at("changes").items()) variant.changes.emplace_back(path, value);
-    for (const Json& one : v.at("studies")) variant.studies.push_back(study(one));
-  }
-  for (const Json& c : j.value("columns", Json::array()))
-    s.columns.push_back({c.at("name"), c.at("unit"), numbers(c.at("values")), numbers(c.at("uncertainties"))});
-  for (const Json& t : j.value("trends", Json::array()))
-    s.trends.push_back({t.at("column"), t.at("quantity"), t.at("unit"), t.at("beside"), t.at("sign"), t.at("variants"),
-                        numbers(t.at("at")), numbers(t.at("difference")), numbers(t.at("uncertainty"))});
-}
-
-Json to_json(const StudySummary& s) {
-  Json values = Json::object();
-  for (const auto& [name, q] : s.values) values[name] = quantity_to_json(q);
-  Json bifurcations = Json::array(), modes = Json::array();
-  for (const Bifurcation& b : s.bifurcations) bifurcations.push_back(to_json(b));
-  for (const ModeEntry& m : s.modes) {
-    modes.push_back({{"speed", number(m.speed)},
-                     {"speed_unit", m.speed_unit},
-                     {"real", number(m.real)},
-                     {"imag", number(m.imag)},
-                     {"log_decrement", number(m.log_decrement)},
-                     {"whirl", text_or_null(m.whirl)}});
-    if (!m.stability.empty()) modes.back()["stability"] = m.stability;
-    if (!m.whirl_rule.empty()) modes.back()["whirl_rule"] = m.whirl_rule;
-    for (const auto& [key, value] : m.more) modes.back()[key] = number(value);
-  }
-  Json j = {{"name", s.name},
-            {"kind", s.kind},
-            {"status", s.status},
-            {"wall_seconds", number(s.wall_seconds)},
-            {"values", std::move(values)},
-            {"bifurcations", std::move(bifurcations)},
-            {"modes", std::move(modes)},
-            {"points", s.points}};
-  if (!s.layout.empty()) j["layout"] = s.layout;
-  if (!s.ways.empty()) j["ways"] = s.ways;
-  if (!s.stability.empty()) j["stability"] = s.stability;
-  for (const StabilityRange& r : s.ranges)
-    j["ranges"].push_back(
-        {{"from", number(r.from)}, {"to", number(r.to)}, {"unit", r.unit}, {"stability", r.stability}});
-  if (!s.warnings.empty()) j["warnings"] = s.warnings;
-  for (const PeakEntry& p : s.peaks) j["peaks"].push_back(to_json(p));
-  for (const Column& c : s.curve) {
-    Json column = Json::array();
-    for (const double v : c.values) column.push_back(number(v));
-    j["curve"][c.name] = {{"unit", c.unit}, {"values", std::move(column)}};
-  }
-  for (const CodimensionTwo& c : s.codimension_two) j["codimension_two"].push_back(to_json(c));
-  for (const Suspicion& x : s.suspected)
-    j["suspected"].push_back({{"from", number(x.from)}, {"to", number(x.to)}, {"unit", x.unit}, {"reason", x.reason}});
-  put_sweep(j, s);
-  if (!s.brief.sentences.empty() || !s.brief.tables.empty()) j["brief"] = brief_to_json(s.brief);
-  return j;
-}
-
-StudySummary study(const Json& j) {
-  StudySummary s;
-  s.name = j.at("name");
-  s.kind = j.at("kind");
-  s.status = j.at("status");
-  s.wall_seconds = number(j.at("wall_seconds"));
-  for (const auto& [name, q] : j.at("values").items()) s.values.emplace_back(name, quantity(q));
-  for (const Json& b : j.at("bifurcations")) s.bifurcations.push_back(bifurcation(b));
-  for (const Json& c : j.value("codimension_two", Json::array())) s.codimension_two.push_back(codimension_two(c));
-  for (const Json& x : j.value("suspected", Json::array()))
-    s.suspected.push_back({number(x.at("from")), number(x.at("to")), x.at("unit"), x.at("reason")});
-  for (const Json& m : j.at("modes"))
-    s.modes.push_back(
-        {number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
-         m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>(), m.value("speed_unit", std::string()),
-         others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl", "stability", "whirl_rule"}),
-         m.value("stability", std::string()), m.value("whirl_rule", std::string())});
-  s.layout = j.value("layout", std::string());
-  s.ways = j.value("ways", std::string());
-  s.stability = j.value("stability", std::string());
-  for (const Json& r : j.value("ranges", Json::array()))
-    s.ranges.push_back({number(r.at("from")), number(r.at("to")), r.at("unit"), r.at("stability")});
-  s.warnings = j.value("warnings", std::vector<std::string>());
-  for (const Json& p : j.value("peaks", Json::array())) s.peaks.push_back(peak(p));
-  const Json curve = j.value("curve", Json::object());
-  for (const auto& [name, c] : curve.items()) {
-    Column column{name, c.at("unit"), {}};
-    for (const Json& v : c.at("values")) column.values.push_back(number(v));
-    s.curve.push_back(std::move(column));
-  }
-  s.points = j.at("points");
-  take_sweep(j, s);
-  if (j.contains("brief")) s.brief = brief_of(j.at("brief"));
-  return s;
-}
-
 }  // namespace
+
+void members(auto& json, Quantity& q) {
+  json("value", q.value);
+  json("unit", q.unit);
+  json.rest(q.more);
+}
+
+void members(auto& json, Bifurcation& b) {
+  json.word("type", b.type, bifurcation_names);
+  json("parameter", b.parameter);
+  json("value", b.value);
+  json("unit", b.unit);
+  json("period_s", b.period_s);
+  json("uncertainty", b.uncertainty);
+  json.or_null("criticality", b.criticality);
+  json.if_any("criticality_by", b.criticality_by);
+  json.if_any("stable_side", b.stable_side);
+  json.if_any("born", b.born);
+  json.if_any("sentence", b.sentence);
+  json.rest(b.more);
+}
+
+void members(auto& json, CodimensionTwo& c) {
+  json("type", c.type);
+  json("parameter", c.parameter);
+  json("value", c.value.value);
+  json("unit", c.value.unit);
+  json("second_parameter", c.second_parameter);
+  json("second_value", c.second_value.value);
+  json("second_unit", c.second_value.unit);
+  json("second_value_uncertainty", c.uncertainty);
+  json.rest(c.more);
+}
+
+void members(auto& json, PeakEntry& p) {
+  json("place", p.place);
+  const auto quantity = [&json](const char* key, Quantity& q) {
+    if (json.has(key, !q.unit.empty())) json(key, q);
+  };
+  quantity("speed", p.speed);
+  quantity("semi_major", p.semi_major);
+  quantity("amplification_factor", p.amplification_factor);
+  quantity("separation_margin", p.separation_margin);
+  quantity("required_margin", p.required_margin);
+  json.if_any("stability", p.stability);
+  json.if_any("verdict", p.verdict);
+  json.if_any("notes", p.notes);
+}
+
+void members(auto& json, ServiceFact& f) {
+  json("what", f.what);
+  json.if_any("place", f.place);
+  if (json.has("value", !f.value.unit.empty())) members(json, f.value);
+  json.if_any("mark", f.mark);
+  json.or_null("study", f.study);
+}
+
+void members(auto& json, Service& s) {
+  members(json, s.speed);
+  json("facts", s.facts);
+}
+
+void members(auto& json, ModeEntry& m) {
+  json("speed", m.speed);
+  json("speed_unit", m.speed_unit);
+  json("real", m.real);
+  json("imag", m.imag);
+  json("log_decrement", m.log_decrement);
+  json.or_null("whirl", m.whirl);
+  json.if_any("stability", m.stability);
+  json.if_any("whirl_rule", m.whirl_rule);
+  json.rest(m.more);
+}
+
+void members(auto& json, StabilityRange& r) {
+  json("from", r.from);
+  json("to", r.to);
+  json("unit", r.unit);
+  json("stability", r.stability);
+}
+
+void members(auto& json, Suspicion& s) {
+  json("from", s.from);
+  json("to", s.to);
+  json("unit", s.unit);
+  json("reason", s.reason);
+}
+
+// Its name is its key.
+void members(auto& json, Column& c) {
+  json("unit", c.unit);
+  json("values", c.values);
+}
+
+void members(auto& json, StudySummary& s);
+
+void members(auto& json, VariantSummary& v) {
+  json("name", v.name);
+  json("changes", v.changes);
+  json("studies", v.studies);
+}
+
+void members(auto& json, SweepColumn& c) {
+  json("name", c.name);
+  json("unit", c.unit);
+  json("values", c.values);
+  json("uncertainties", c.uncertainties);
+}
+
+void members(auto& json, Trend& t) {
+  json("column", t.column);
+  json("quantity", t.quantity);
+  json("unit", t.unit);
+  json("beside", t.beside);
+  json("sign", t.sign);
+  json("variants", t.variants);
+  json("at", t.at);
+  json("difference", t.difference);
+  json("uncertainty", t.uncertainty);
+}
+
+void members(auto& json, BriefColumn& c) {
+  json("name", c.name);
+  json("unit", c.unit);
+  json("shown", c.shown);
+  json("factor", c.factor);
+}
+
+void members(auto& json, BriefTable& t) {
+  json("caption", t.caption);
+  json("columns", t.columns);
+  json("rows", t.rows);
+  json.if_any("note", t.note);
+}
+
+void members(auto& json, Brief& b) {
+  json("sentences", b.sentences);
+  json("tables", b.tables);
+  if (json.has("tells_stability", b.tells_stability)) json("tells_stability", b.tells_stability);
+}
+
+void members(auto& json, StudySummary& s) {
+  json("name", s.name);
+  json("kind", s.kind);
+  json("status", s.status);
+  json("wall_seconds", s.wall_seconds);
+  json("values", s.values);
+  json("bifurcations", s.bifurcations);
+  json("modes", s.modes);
+  json("points", s.points);
+  json.if_any("layout", s.layout);
+  json.if_any("ways", s.ways);
+  json.if_any("stability", s.stability);
+  json.if_any("ranges", s.ranges);
+  json.if_any("warnings", s.warnings);
+  json.if_any("peaks", s.peaks);
+  json.if_any_by_name("curve", s.curve);
+  json.if_any("codimension_two", s.codimension_two);
+  json.if_any("suspected", s.suspected);
+  json.if_any("variants", s.variants);
+  json.if_any("columns", s.columns);
+  json.if_any("trends", s.trends);
+  if (json.has("brief", !s.brief.sentences.empty() || !s.brief.tables.empty())) json("brief", s.brief);
+}
+
+void members(auto& json, LibraryOption& o) {
+  json("name", o.name);
+  json("value", o.value);
+  json.or_null("source", o.source);
+}
+
+void members(auto& json, Summary& s) {
+  json("title", s.title);
+  json("version", s.version);
+  json("ranks", s.ranks);
+  json("wall_seconds", s.wall_seconds);
+  if (json.has("options", true)) json("options", s.options);
+  json.if_any("warnings", s.warnings);
+  if (json.has("service_speed", !s.service.speed.unit.empty())) json("service_speed", s.service);
+  json("studies", s.studies);
+}
+
+// A number with the text that a person reads, or a word.
+Json JsonWriter::value_of(const BriefCell& cell) {
+  if (!cell.is_number()) return cell.text.empty() ? Json(nullptr) : Json(cell.text);
+  Json out = value_of(cell.quantity);
+  out["text"] = cell.text;
+  return out;
+}
+
+void JsonReader::read(const Json& j, BriefCell& cell) {
+  if (j.is_null()) return;
+  if (j.is_string()) return read(j, cell.text);
+  Json number = j;
+  number.erase("text");
+  read(number, cell.quantity);
+  read(j.at("text"), cell.text);
+}
 
 double Quantity::bar() const {
   const auto at = more.find("uncertainty");
@@ -321,21 +245,8 @@ void Summary::set(StudySummary study) {
 }
 
 std::string Summary::to_json() const {
-  Json list = Json::array();
-  for (const StudySummary& s : studies) list.push_back(io::to_json(s));
-  Json given = Json::array();
-  for (const LibraryOption& o : options)
-    given.push_back({{"name", o.name}, {"value", o.value}, {"source", text_or_null(o.source)}});
-  Json j = {{"title", title},
-            {"version", version},
-            {"ranks", ranks},
-            {"wall_seconds", number(wall_seconds)},
-            {"options", std::move(given)}};
-  if (!warnings.empty()) j["warnings"] = warnings;
-  if (!service.speed.unit.empty()) j["service_speed"] = io::to_json(service);
-  j["studies"] = std::move(list);
   // Texts come from users' decks; a byte that is not UTF-8 must not cost the results.
-  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonWriter::value_of(*this).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void Summary::write(const std::filesystem::path& path) const {
@@ -344,18 +255,8 @@ void Summary::write(const std::filesystem::path& path) const {
 
 Summary Summary::from_json(const std::string& text) {
   try {
-    const Json j = Json::parse(text);
     Summary s;
-    s.title = j.at("title");
-    s.version = j.at("version");
-    s.ranks = j.at("ranks");
-    s.wall_seconds = number(j.at("wall_seconds"));
-    for (const Json& o : j.value("options", Json::array()))
-      s.options.push_back(
-          {o.at("name"), o.at("value"), o.at("source").is_null() ? "" : o.at("source").get<std::string>()});
-    s.warnings = j.value("warnings", std::vector<std::string>());
-    if (j.contains("service_speed")) s.service = io::service(j.at("service_speed"));
-    for (const Json& one : j.at("studies")) s.studies.push_back(study(one));
+    JsonReader::read(Json::parse(text), s);
     return s;
   } catch (const Json::exception& e) {
     throw core::Error(std::string("not a summary of a run: ") + e.what());
