@@ -53,30 +53,10 @@ std::optional<Growth> growth_at(system::Plant& system, Vec x, std::string* reaso
   return out;
 }
 
-std::vector<double> packed(const std::optional<Growth>& growth) {
-  if (!growth) return {};
-  std::vector<double> out{static_cast<double>(growth->missed), static_cast<double>(growth->undamped),
-                          static_cast<double>(growth->real.size()), static_cast<double>(growth->mesh_waves.size())};
-  out.insert(out.end(), growth->real.begin(), growth->real.end());
-  for (const auto* values : {&growth->mesh_waves, &growth->pairs})
-    for (const std::complex<double>& s : *values) out.insert(out.end(), {s.real(), s.imag()});
-  return out;
-}
-
-void put_growth(const std::vector<double>& packed, const std::string& where, const std::string& consequence,
+void put_growth(const std::optional<Growth>& growth, const std::string& where, const std::string& consequence,
                 io::StudySummary& summary) {
-  summary.stability = "undetermined";
-  if (packed.empty()) return;
-  Growth growth;
-  growth.missed = static_cast<int>(packed[0]);
-  growth.undamped = static_cast<int>(packed[1]);
-  const auto complex = packed.begin() + 4 + static_cast<std::ptrdiff_t>(packed[2]);
-  growth.real.assign(packed.begin() + 4, complex);
-  const auto waves = static_cast<std::size_t>(packed[3]);
-  for (auto at = complex; at != packed.end(); at += 2)
-    (growth.mesh_waves.size() < waves ? growth.mesh_waves : growth.pairs).emplace_back(at[0], at[1]);
-  summary.stability = growth.verdict();
-  warn_of(growth, where, consequence, summary);
+  summary.stability = growth ? growth->verdict() : "undetermined";
+  if (growth) warn_of(*growth, where, consequence, summary);
 }
 
 void warn_of(const Growth& growth, const std::string& where, const std::string& consequence,

@@ -34,17 +34,15 @@ struct Growth {
   /// "it diverges (s = +311.3 1/s)", "an oscillation grows (181.2 Hz, log decrement -0.00917)", with the number of
   /// those that grow where there are several; empty if nothing grows.
   [[nodiscard]] std::string words() const;
+  void members(auto& archive) { archive(real, pairs, undamped, missed, mesh_waves); }
 };
 
 [[nodiscard]] Growth growth_of(const solve::Stability& stability);
 /// Of the equilibrium x at the system's parameter; nothing where the search finds no eigenvalues, with the reason.
 /// Cost: one eigenvalue problem without vectors. Collective.
 [[nodiscard]] std::optional<Growth> growth_at(system::Plant& system, Vec x, std::string* reason = nullptr);
-/// As numbers that ranks and pieces of a checkpoint hold; none where nothing is known.
-[[nodiscard]] std::vector<double> packed(const std::optional<Growth>& growth);
-/// Verdict of a linear study at one speed, "undetermined" where nothing is known, from packed(); with warn_of() its
-/// warning.
-void put_growth(const std::vector<double>& packed, const std::string& where, const std::string& consequence,
+/// Verdict of a linear study at one speed, "undetermined" where nothing is known; with warn_of() its warning.
+void put_growth(const std::optional<Growth>& growth, const std::string& where, const std::string& consequence,
                 io::StudySummary& summary);
 /// Adds the warning "WHERE the equilibrium is unstable: ..., CONSEQUENCE" if something grows; `where` as "at 3600 rpm".
 /// warn_of_waves() is called as well.

@@ -67,6 +67,8 @@ struct Trail {
   std::function<std::vector<double>()> leave;
   std::function<void(const std::vector<double>&)> take;
 };
+/// Of items that start anew.
+inline const Trail no_trail{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
 
 /// The same in rounds of about a quarter of a second, after which the answers are `kept` as pieces `name 1`, ..., `name
 /// n`: those of an interrupted run are not computed again, and on one rank the others start from what they would have

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double least_seconds = 0.5;  // between two files
 
-constexpr int log_format = 4;
+constexpr int format = 5;
 constexpr std::int64_t as_rows = -1;  // the size of a vector that is a dataset of its own
 
 std::string name_of_rows(std::size_t k) {
@@ -45,7 +45,6 @@ void write_log(io::Group& group, const solve::ReplayLog& replay_log) {
     }
     texts.insert(texts.end(), {e.kind, e.answer.text});
   }
-  group.set("format", log_format);
   group.put("numbers", std::move(numbers), "1", "questions and answers, and their vectors unless these stand apart");
   group.put("sizes", std::move(sizes),
             "of each entry: of question and answer, state, number of vectors and their sizes; -1: stands apart");
@@ -53,8 +52,6 @@ void write_log(io::Group& group, const solve::ReplayLog& replay_log) {
 }
 
 std::vector<solve::ReplayLog::Entry> read_log(const io::Group& group) {
-  if (!group.has_attribute("format") || group.integer("format") != log_format)
-    throw core::InputError("the checkpoint is that of another version of the program: begin again with --force");
   std::vector<solve::ReplayLog::Entry> entries;
   const auto& sizes = group.integers("sizes");
   const auto& texts = group.strings("texts");
@@ -92,10 +89,12 @@ Pieces::Pieces(Findings& findings, bool resume, bool save, int layout)
   replay_log_.changed = [this] { save_if_due(); };
   if (resume && findings_.has_checkpoint()) {
     const io::Group all = findings_.load_checkpoint();
+    if (!all.has_attribute("format") || all.integer("format") != format)
+      throw core::InputError("the checkpoint is that of another version of the program: begin again with --force");
     state_ = all.group("state");
     pieces_ = all.group("pieces");
     same_layout_ = all.has_attribute("layout") && all.integer("layout") == layout_;
-    if (same_layout_ && all.has_group("replay_log")) replay_log_.begin(read_log(all.group("replay_log")));
+    if (same_layout_) replay_log_.begin(read_log(all.group("replay_log")));
     findings_.add_earlier_seconds(all.real("seconds"));
   }
 }
@@ -122,10 +121,6 @@ std::vector<double> Pieces::numbers(const std::string& name, const std::function
 
 double Pieces::number(const std::string& name, const std::function<double()>& work) {
   return numbers(name, [&] { return std::vector<double>{work()}; }).front();
-}
-
-solve::Stability Pieces::stability(const std::string& name, const std::function<solve::Stability()>& work) {
-  return read_stability(get(name, [&](io::Group& g) { write_stability(g, work()); }));
 }
 
 void Pieces::complete(const std::string& name, io::Bifurcation& b, const std::function<void()>& work) {
@@ -174,6 +169,7 @@ void Pieces::write() {
   all.child("state") = state_;
   all.child("pieces") = pieces_;
   write_log(all.child("replay_log"), replay_log_);
+  all.set("format", format);
   all.set("layout", layout_);
   all.set("seconds", findings_.seconds());
   all.set("seconds_between_files", between());

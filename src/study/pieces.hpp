@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "findings.hpp"
+#include "study/packed.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 
 namespace whirl::study {
@@ -40,8 +41,11 @@ public:
   /// The same for numbers.
   std::vector<double> numbers(const std::string& name, const std::function<std::vector<double>()>& work);
   double number(const std::string& name, const std::function<double()>& work);
-  /// The same for the stability of a point.
-  solve::Stability stability(const std::string& name, const std::function<solve::Stability()>& work);
+  /// The same for what pack() takes.
+  template <class Work>
+  auto value(const std::string& name, const Work& work) {
+    return unpack<decltype(work())>(numbers(name, [&] { return pack(work()); }));
+  }
   /// The same for all that is known of a bifurcation: `work` adds to it.
   void complete(const std::string& name, io::Bifurcation& b, const std::function<void()>& work);
   [[nodiscard]] bool known(const std::string& name) const { return pieces_.has_group(name); }

@@ -6,6 +6,7 @@
 
 #include "study/growth.hpp"
 #include "study/linear/mode_stations.hpp"
+#include "study/packed.hpp"
 
 using namespace whirl;
 using study::Border;
@@ -48,12 +49,13 @@ TEST(Growth, CountsRealAndComplexEigenvalues) {
       "it diverges (s = +7 1/s, the fastest of 3 real eigenvalues), and an oscillation grows (10 Hz, log decrement "
       "-0.2)");
   io::StudySummary told, missed, silent;
-  study::put_growth(study::packed(g), "at 1 rpm", "The end", told);
+  const auto sent = study::unpack<std::optional<study::Growth>>(study::pack(std::optional(g)));
+  study::put_growth(sent, "at 1 rpm", "The end", told);
   EXPECT_EQ(told.stability, "unstable");
   EXPECT_EQ(told.warnings, std::vector{"at 1 rpm the equilibrium is unstable: " + g.words() + ". The end"});
   study::Growth some = growth({{-3, 0}});
   some.missed = 1;
-  study::put_growth(study::packed(some), "", "", missed);
+  study::put_growth(some, "", "", missed);
   study::put_growth({}, "", "", silent);
   EXPECT_EQ(missed.stability, "undetermined");
   EXPECT_EQ(silent.stability, "undetermined");

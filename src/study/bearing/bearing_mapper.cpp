@@ -5,35 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "whirl/core/agree.hpp"
 
 namespace whirl::study {
-namespace {
-
-void write(io::Group& g, const MapPoint& p) {
-  std::vector<double> numbers{p.at.eccentricity, p.at.attitude,    p.at.sommerfeld,
-                              p.at.speed_limit,  p.at.whirl_ratio, p.thickness};
-  for (const BearingCoefficients& c : p.coefficients)
-    for (const auto* of : {&c.k, &c.b}) numbers.insert(numbers.end(), of->begin(), of->end());
-  g.put("numbers", std::move(numbers), "1", "the equilibrium, then stiffness and damping of each frequency");
-  g.put("states", p.at.states, "1", "of the film");
-}
-MapPoint read_point(const io::Group& g) {
-  const std::vector<double>& n = g.reals("numbers");
-  MapPoint p{{n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), g.reals("states")}, n.at(5), {}};
-  for (std::size_t k = 6; k + 8 <= n.size(); k += 8) {
-    BearingCoefficients& c = p.coefficients.emplace_back();
-    for (std::size_t i = 0; i < 4; ++i) {
-      c.k[i] = n[k + i];
-      c.b[i] = n[k + 4 + i];
-    }
-  }
-  return p;
-}
-
-}  // namespace
-
 Mapper::Mapper(const Context& context, Pieces& pieces, std::string head, const BearingMapOptions& options,
                const system::Support& support)
     : comm_(context.comm), pieces_(pieces), head_(std::move(head)), options_(options) {
@@ -132,7 +108,7 @@ void Mapper::squeeze() {
 void Mapper::follow_curve(const BearingEquilibrium& centred) {
   constexpr int starts = 64;
   curve_.emplace(bearing_->locus());
-  const io::Group& kept = pieces_.get(head_ + "curve", [&](io::Group& g) {
+  const std::vector<double> kept = pieces_.numbers(head_ + "curve", [&] {
     core::agree(comm_, [&] {
       for (int i = 1; i <= starts && curve_->nodes.empty(); ++i)
         if (const auto e = bearing_->carrying(options_.max_eccentricity * i / starts, centred))
@@ -140,30 +116,13 @@ void Mapper::follow_curve(const BearingEquilibrium& centred) {
               {e->states, {e->eccentricity * std::sin(e->attitude), -e->eccentricity * std::cos(e->attitude)}},
               options_.max_eccentricity);
     });
-    std::vector<double> places, states;
-    for (const JournalLocus::Node& node : curve_->nodes) {
-      places.insert(places.end(), node.place.begin(), node.place.end());
-      states.insert(states.end(), node.states.begin(), node.states.end());
-    }
-    g.put("places", std::move(places), "1", "x, y of the journal in clearances");
-    g.put("states", std::move(states), "1", "of the film");
-    g.put("folds", curve_->folds, "1", "eccentricities at which the curve turns");
-    g.set("end", static_cast<int>(curve_->end));
-    g.set("why", curve_->why);
+    return pack(*curve_);
   });
-  const std::vector<double>&places = kept.reals("places"), &states = kept.reals("states");
-  const std::size_t n = centred.states.size();
-  curve_->nodes.resize(places.size() / 2);
-  for (std::size_t k = 0; k < curve_->nodes.size(); ++k) {
-    const auto first = states.begin() + static_cast<std::ptrdiff_t>(k * n);
-    curve_->nodes[k] = {{first, first + static_cast<std::ptrdiff_t>(n)}, {places[2 * k], places[2 * k + 1]}};
-  }
-  curve_->folds = kept.reals("folds");
-  curve_->end = static_cast<JournalLocus::End>(kept.integer("end"));
+  unpack(kept, *curve_);
   folds = curve_->folds;
   if (curve_->nodes.empty() || curve_->end == JournalLocus::End::reached) return;
   const bool fold = curve_->end == JournalLocus::End::fold;
-  limit = MapLimit{curve_->farthest().eccentricity(), fold, fold ? "" : kept.text("why")};
+  limit = MapLimit{curve_->farthest().eccentricity(), fold, fold ? "" : curve_->why};
 }
 
 std::optional<BearingEquilibrium> Mapper::reach(const BearingEquilibrium& near, double wanted) {
@@ -201,19 +160,14 @@ MapPoint Mapper::complete(const BearingEquilibrium& e) {
 
 std::optional<MapPoint> Mapper::piece(const std::string& name, const std::function<std::optional<MapPoint>()>& compute,
                                       BearingProfile* profile) {
-  const io::Group& kept = pieces_.get(head_ + name, [&](io::Group& g) {
-    std::optional<MapPoint> found;
-    core::agree(comm_, [&] { found = compute(); });
-    if (!found) return;
-    write(g, *found);
-    if (!profile) return;
-    g.put("theta", profile->theta, "rad", "of the profile");
-    g.put("pressure", profile->pressure, "1", "of the profile");
-    g.put("thickness", profile->thickness, "1", "of the profile");
+  auto [found, left] = pieces_.value(head_ + name, [&] {
+    std::pair<std::optional<MapPoint>, BearingProfile> out;
+    core::agree(comm_, [&] { out.first = compute(); });
+    if (profile && out.first) out.second = *profile;
+    return out;
   });
-  if (!kept.has_dataset("numbers")) return std::nullopt;
-  if (profile) *profile = {kept.reals("theta"), kept.reals("pressure"), kept.reals("thickness")};
-  return read_point(kept);
+  if (profile && found) *profile = std::move(left);
+  return found;
 }
 
 }  // namespace whirl::study

@@ -21,6 +21,7 @@ struct MapPoint {
   BearingEquilibrium at;
   double thickness = 0;  ///< least one of the film [m]
   std::vector<BearingCoefficients> coefficients;
+  void members(auto& archive) { archive(at, thickness, coefficients); }
 };
 
 /// Where the locus of a bearing that is not rigid ends before the largest eccentricity.

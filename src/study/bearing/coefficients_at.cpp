@@ -4,92 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <utility>
 
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/held_film.hpp"
-#include "whirl/core/agree.hpp"
 
 namespace whirl::study {
 namespace {
 
 constexpr double beside = 1e-6;  // clearances
-
-// The numbers of one matrix pair, and how many they are.
-constexpr std::size_t of_pair = 1 + 2 * 16;
-void put(std::vector<double>& out, const film::PortCoefficients& c) {
-  out.push_back(static_cast<double>(c.ports));
-  for (const auto* of : {&c.stiffness, &c.damping})
-    for (const auto& row : *of) out.insert(out.end(), row.begin(), row.end());
-}
-film::PortCoefficients take(const double*& from) {
-  film::PortCoefficients c;
-  c.ports = static_cast<std::size_t>(*from++);
-  for (auto* of : {&c.stiffness, &c.damping})
-    for (auto& row : *of)
-      for (double& value : row) value = *from++;
-  return c;
-}
-
-void write(io::Group& g, const AtSpeed& a) {
-  const film::JournalMotion& m = a.place.motion;
-  std::vector<double> place(m.position.begin(), m.position.end());
-  place.insert(place.end(), {a.place.force[0], a.place.force[1], a.thickness});
-  g.put("place", std::move(place), "1", "x, y, slopes; force; least thickness; in SI units");
-  g.put("states", a.place.states, "1", "of the film");
-  std::vector<double> coefficients, enforced, centre;
-  for (const film::PortCoefficients& c : a.coefficients) put(coefficients, c);
-  std::vector<std::string> lost;
-  for (const auto& frequency : a.enforced)
-    for (const EnforcedAt& e : frequency) {
-      put(enforced, e.coefficients);
-      enforced.insert(enforced.end(), e.tail.begin(), e.tail.end());
-      enforced.insert(enforced.end(), e.distortion.begin(), e.distortion.end());
-      enforced.push_back(e.apart);
-      lost.insert(lost.end(), e.lost.begin(), e.lost.end());
-    }
-  if (a.centre) put(centre, *a.centre);
-  g.put("coefficients", std::move(coefficients), "1", "ports, stiffness, damping of each frequency");
-  g.put("enforced", std::move(enforced), "1", "the same, tails, distortions and distance, [frequency][amplitude]");
-  g.put("lost", std::move(lost), "why an enforced motion has no values");
-  g.put("centre", std::move(centre), "1", "of the film at the centre");
-  g.put("most", a.most ? std::vector<double>{a.most->load, a.most->eccentricity} : std::vector<double>{}, "1",
-        "load that the film carries, eccentricity");
-  g.set("amplitudes", a.enforced.empty() ? 0 : static_cast<int>(a.enforced.front().size()));
-  g.set("reason", a.reason);
-}
-
-AtSpeed read(const io::Group& g, double speed) {
-  AtSpeed a;
-  const std::vector<double>& place = g.reals("place");
-  a.place.motion.speed = speed;
-  std::copy_n(place.begin(), 4, a.place.motion.position.begin());
-  a.place.force = {place.at(4), place.at(5)};
-  a.thickness = place.at(6);
-  a.place.states = g.reals("states");
-  const std::vector<double>&coefficients = g.reals("coefficients"), &enforced = g.reals("enforced"),
-        &centre = g.reals("centre"), &most = g.reals("most");
-  const double* from = coefficients.data();
-  for (std::size_t k = 0; k < coefficients.size() / of_pair; ++k) a.coefficients.push_back(take(from));
-  const std::vector<std::string>& lost = g.strings("lost");
-  const auto amplitudes = static_cast<std::size_t>(g.integer("amplitudes"));
-  from = enforced.data();
-  for (std::size_t k = 0; 4 * k < lost.size(); ++k) {
-    if (k % amplitudes == 0) a.enforced.emplace_back();
-    EnforcedAt& e = a.enforced.back().emplace_back();
-    e.coefficients = take(from);
-    for (double& value : e.tail) value = *from++;
-    for (double& value : e.distortion) value = *from++;
-    e.apart = *from++;
-    std::copy_n(lost.begin() + static_cast<std::ptrdiff_t>(4 * k), 4, e.lost.begin());
-  }
-  from = centre.data();
-  if (!centre.empty()) a.centre = take(from);
-  if (!most.empty()) a.most = Capacity{most[0], most.at(1), false};
-  a.reason = g.text("reason");
-  return a;
-}
 
 // Largest difference of two, of the largest entry of their kind.
 double apart(const film::PortCoefficients& a, const film::PortCoefficients& b) {
@@ -187,34 +110,18 @@ std::string of_the_centre(const AtSpeed& at) {
 
 AtSpeed at_speed(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed,
                  const std::function<AtSpeed()>& compute) {
-  const io::Group& kept = pieces.get(name, [&](io::Group& g) {
+  AtSpeed at = pieces.value(name, [&] {
     AtSpeed out;
-    std::string reason;
-    const auto none = agreed_place(comm, [&] {
-      std::exception_ptr no_place;
-      const bool answered = has_answer(
-          [&] {
-            try {
-              out = compute();
-            } catch (const NoPlace&) {
-              no_place = std::current_exception();
-              throw;
-            }
-          },
-          &reason);
-      if (no_place) std::rethrow_exception(no_place);
-      if (!answered) out = {};
-    });
-    if (none) {
-      out = {};
-      reason = none->what();
-      out.most = none->most;
-    }
-    out.reason = reason;
-    if (!out.found()) out.place.motion.position.fill(io::no_value);
-    write(g, out);
+    WithoutFilm none = agreed_film(comm, [&] { out = compute(); });
+    if (none.reason.empty()) return out;
+    out = {};
+    out.place.motion.position.fill(io::no_value);
+    out.reason = std::move(none.reason);
+    out.most = none.most;
+    return out;
   });
-  return read(kept, speed);
+  at.place.motion.speed = speed;
+  return at;
 }
 
 }  // namespace whirl::study

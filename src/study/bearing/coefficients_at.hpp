@@ -27,7 +27,14 @@ struct AtSpeed {
   [[nodiscard]] bool found() const { return reason.empty(); }
   /// As many coefficients that are not numbers.
   void fill(std::size_t ports, std::size_t frequencies, std::size_t amplitudes);
+  void members(auto& archive) {
+    archive(place.motion.position, place.states, place.force, thickness);
+    archive(coefficients, enforced, centre, reason, most);
+  }
 };
+void members(auto& archive, film::PortCoefficients& c) {
+  archive(c.ports, c.stiffness, c.damping);
+}
 
 /// At `speed` rad/s, sought from `last`, if there is one. Throws as rest_at() and FilmAtRest::carry() do.
 ///

@@ -21,6 +21,7 @@ struct EnforcedAt {
   std::array<std::string, 4> lost{};   ///< why there is none along a port; else empty
   std::array<double, 4> distortion{};  ///< of the forces by the motion along each port: what K and B leave of them
   double apart = 0;                    ///< largest difference from the perturbation, of the largest entry of its block
+  void members(auto& archive) { archive(coefficients, tail, lost, distortion, apart); }
 };
 
 /// About `at` at the frequency omega [rad/s], of `amplitudes` in clearances, slopes' over twice the length:

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "study/bars/summary_bars.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
@@ -59,6 +60,26 @@ std::optional<NoPlace> agreed_place(MPI_Comm comm, const std::function<void()>& 
   MPI_Bcast(text.data(), length, MPI_CHAR, source, comm);
   MPI_Bcast(facts.data(), static_cast<int>(facts.size()), MPI_DOUBLE, source, comm);
   return NoPlace(text, facts[0], {facts[1], facts[2], facts[3] != 0});
+}
+
+WithoutFilm agreed_film(MPI_Comm comm, const std::function<void()>& compute) {
+  WithoutFilm out;
+  const auto none = agreed_place(comm, [&] {
+    std::optional<NoPlace> no_place;
+    (void)has_answer(
+        [&] {
+          try {
+            compute();
+          } catch (const NoPlace& error) {
+            no_place = error;
+            throw;
+          }
+        },
+        &out.reason);
+    if (no_place) throw *no_place;
+  });
+  if (none) out = {none->what(), none->most};
+  return out;
 }
 
 FilmAtRest::FilmAtRest(const system::Support& support, double speed)

@@ -24,6 +24,7 @@ struct Capacity {
   double load = 0;          ///< N
   double eccentricity = 0;  ///< there, in clearances
   bool rises = false;       ///< it still grows with the eccentricity where the search ended
+  void members(auto& archive) { archive(load, eccentricity, rises); }
 };
 [[nodiscard]] std::string in_words(const Capacity& most);
 
@@ -40,6 +41,14 @@ public:
 /// ranks get that of the lowest one: all compute the same, but at the most that a film carries the last digit decides,
 /// and ranks that part there would wait for each other. Throws as core::agree(). Collective.
 [[nodiscard]] std::optional<NoPlace> agreed_place(MPI_Comm comm, const std::function<void()>& compute);
+
+/// Why there is no film; nothing where there is one.
+struct WithoutFilm {
+  std::string reason = {};
+  std::optional<Capacity> most = {};  ///< of a film that does not carry its load
+};
+/// Runs `compute` as agreed_place() does; also other films that are not there have a reason, see has_answer().
+[[nodiscard]] WithoutFilm agreed_film(MPI_Comm comm, const std::function<void()>& compute);
 
 /// A journal at rest and the film that has come to rest with it.
 struct JournalPlace {

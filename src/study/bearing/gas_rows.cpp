@@ -1,11 +1,8 @@
 #include "study/bearing/gas_rows.hpp"
 
-#include <exception>
 #include <utility>
 
-#include "study/bars/summary_bars.hpp"
 #include "study/bearing/film_at_rest.hpp"
-#include "whirl/core/agree.hpp"
 
 namespace whirl::study {
 
@@ -32,77 +29,29 @@ std::span<const GasQuantity> gas_quantities() {
   return all;
 }
 
-namespace {
-
-void write(io::Group& g, const GasRow& row) {
-  g.put("place", {row.eccentricity, row.place[0], row.place[1]}, "1", "eccentricity in clearances; x, y in m");
-  g.put("values", row.values, "1", "of the quantities in SI units");
-  g.put("capacity", {row.capacity, row.at_capacity}, "1", "load in N, eccentricity");
-  g.set("reason", row.reason);
-  std::vector<std::string> texts;
-  for (std::size_t k = 0; k < row.fields.size(); ++k) {
-    const film::NodalField& f = row.fields[k];
-    texts.insert(texts.end(), {f.name, f.unit, std::to_string(f.pad)});
-    g.put("field " + std::to_string(k), f.shape, f.values, f.unit, f.name);
-  }
-  g.put("fields", std::move(texts), "name, unit and pad of each field");
-}
-
-GasRow row_from(const io::Group& g, double speed) {
-  GasRow row;
-  row.speed = speed;
-  const std::vector<double>&place = g.reals("place"), &capacity = g.reals("capacity");
-  row.eccentricity = place.at(0);
-  row.place = {place.at(1), place.at(2)};
-  row.values = g.reals("values");
-  row.capacity = capacity.at(0);
-  row.at_capacity = capacity.at(1);
-  row.reason = g.text("reason");
-  const std::vector<std::string>& texts = g.strings("fields");
-  for (std::size_t k = 0; 3 * k < texts.size(); ++k) {
-    const std::string name = "field " + std::to_string(k);
-    row.fields.push_back(
-        {std::stoi(texts[3 * k + 2]), texts[3 * k], texts[3 * k + 1], g.dataset(name).shape, g.reals(name)});
-  }
-  return row;
-}
-
-}  // namespace
-
 GasRow gas_row(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed, bool fields,
                const std::function<GasPoint()>& compute) {
-  const io::Group& kept = pieces.get(name, [&](io::Group& g) {
-    GasRow row;
-    const auto none = agreed_place(comm, [&] {
-      GasPoint p;
-      std::exception_ptr no_place;
-      const bool answered = has_answer(
-          [&] {
-            try {
-              p = compute();
-            } catch (const NoPlace&) {
-              no_place = std::current_exception();
-              throw;
-            }
-          },
-          &row.reason);
-      if (no_place) std::rethrow_exception(no_place);
-      if (!answered) return row.values.assign(gas_quantities().size(), io::no_value);
-      row.eccentricity = p.eccentricity;
-      row.place = p.place;
-      for (const GasQuantity& q : gas_quantities()) row.values.push_back(q.of(p));
-      if (fields) row.fields = std::move(p.fields);
+  GasRow row = pieces.value(name, [&] {
+    GasRow out;
+    const WithoutFilm none = agreed_film(comm, [&] {
+      GasPoint p = compute();
+      out.eccentricity = p.eccentricity;
+      out.place = p.place;
+      for (const GasQuantity& q : gas_quantities()) out.values.push_back(q.of(p));
+      if (fields) out.fields = std::move(p.fields);
     });
-    if (none) {
-      row = {};
-      row.values.assign(gas_quantities().size(), io::no_value);
-      row.reason = none->what();
-      row.capacity = none->most.load;
-      row.at_capacity = none->most.eccentricity;
+    if (none.reason.empty()) return out;
+    out = {};
+    out.values.assign(gas_quantities().size(), io::no_value);
+    out.reason = none.reason;
+    if (none.most) {
+      out.capacity = none.most->load;
+      out.at_capacity = none.most->eccentricity;
     }
-    write(g, row);
+    return out;
   });
-  return row_from(kept, speed);
+  row.speed = speed;
+  return row;
 }
 
 std::vector<std::string> reasons_of(const std::vector<GasRow>& rows) {

@@ -27,7 +27,11 @@ struct GasRow {
   std::string reason;                                          ///< empty: there is a film
   double capacity = io::no_value, at_capacity = io::no_value;  ///< N; eccentricity: the most that it carries
   [[nodiscard]] bool found() const { return reason.empty(); }
+  void members(auto& archive) { archive(eccentricity, place, values, fields, reason, capacity, at_capacity); }
 };
+void members(auto& archive, film::NodalField& f) {
+  archive(f.pad, f.name, f.unit, f.shape, f.values);
+}
 
 /// The piece of that name: what `compute` returns, which must not communicate, or why it does not. A film that carries
 /// less than its load leaves the most that it carries. All ranks compute alike, and get the same. Collective.

@@ -25,6 +25,7 @@ public:
     std::vector<double> states;
     std::array<double, 2> place{};  ///< x, y in clearances
     [[nodiscard]] double eccentricity() const;
+    void members(auto& archive) { archive(states, place); }
   };
   enum class End { reached, fold, lost };
   /// `film` outlives this. At `speed` rad/s; `load` [N] is a typical force.
@@ -43,6 +44,7 @@ public:
   std::vector<double> folds;  ///< eccentricities at which it turns, to 1e-9, one after another
   End end = End::reached;
   std::string why;  ///< lost: what the film said last; may be empty
+  void members(auto& archive) { archive(nodes, folds, end, why); }
 
 private:
   using Vector = Eigen::VectorXd;  // scaled states, then x, y in clearances

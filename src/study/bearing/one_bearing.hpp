@@ -15,6 +15,7 @@ namespace whirl::study {
 /// Stiffness c k/(mu Omega L D (R/c)^2) and damping c Omega b/(same), entries xx, xy, yx, yy.
 struct BearingCoefficients {
   std::array<double, 4> k, b;
+  void members(auto& archive) { archive(k, b); }
 };
 
 /// A journal at rest in the bearing, its film carrying a load along -y. NaN: unknown.
@@ -25,6 +26,7 @@ struct BearingEquilibrium {
   double speed_limit = 0;      ///< Omega sqrt(m c/load) of a rigid rotor at the border of stability; NaN: always stable
   double whirl_ratio = 0;      ///< whirl frequency there over Omega
   std::vector<double> states;  ///< own states of the film, if it has any
+  void members(auto& archive) { archive(eccentricity, attitude, sommerfeld, speed_limit, whirl_ratio, states); }
 };
 
 /// Pressure and thickness around the bearing in its mid-plane.
@@ -32,6 +34,7 @@ struct BearingProfile {
   std::vector<double> theta;      ///< from +x [rad]
   std::vector<double> pressure;   ///< (c/R)^2 p/(6 mu Omega)
   std::vector<double> thickness;  ///< in clearances
+  void members(auto& archive) { archive(theta, pressure, thickness); }
 };
 
 /// The film of one bearing at a shaft speed. Not collective; not thread-safe.

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/held_film.hpp"
@@ -127,17 +128,17 @@ void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options,
   found[0].push_back(energy_residual);
   for (std::size_t m = 1; m < meshes.size(); ++m) {
     const std::string cells = fmt::format("{}", fmt::join(meshes[m], " x "));
-    const io::Group& kept = pieces.get(fmt::format("mesh {}", m), [&](io::Group& g) {
+    auto [values, reason] = pieces.value(fmt::format("mesh {}", m), [&] {
       context.results.progress(cells + " cells for the error bars");
       ThdOptions there = options;
       there.cells = meshes[m];
       for (thermal::WallOptions* wall : {&there.bush, &there.journal}) wall->layers = std::max(2, wall->layers >> m);
-      std::string reason;
-      g.put("values", values_on(context.comm, there, geometry, speed, start, count, reason), "1", "on that mesh");
-      g.set("reason", reason);
+      std::pair<std::vector<double>, std::string> out;
+      out.first = values_on(context.comm, there, geometry, speed, start, count, out.second);
+      return out;
     });
-    found.push_back(kept.reals("values"));
-    if (const std::string& reason = kept.text("reason"); !reason.empty())
+    found.push_back(std::move(values));
+    if (!reason.empty())
       summary.warnings.push_back(fmt::format("the error bars lack the mesh of {} cells: {}", cells, reason));
     io::StudySummary there;
     for (std::size_t k = 0; k < count; ++k)

@@ -4,6 +4,7 @@
 
 #include "study/branch_state.hpp"
 #include "study/cycle/cycle_follower.hpp"
+#include "study/packed.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/newton.hpp"
 
@@ -94,7 +95,7 @@ void CycleFollower::save(const solve::ResumePoint& at, Vec u, Vec tangent) {
   state.set("period_scale", problem_->period_scale());
   solve::BranchPoint now = at.point;
   now.slope = solve::last_entry(problem_->comm(), tangent);
-  write_point(state.child("point"), now);
+  put_packed(state, "point", now, "the last one");
   write_memory(state.child("memory"), *at.memory, layout().shared);
   state.set("next_step", at.next_step);
   state.set("largest_difference", largest_);
@@ -130,7 +131,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   solve::Restart restart{problem_->scatter(cycle),
                          problem_->scatter(direction),
                          state.real("next_step"),
-                         read_point(state.group("point")),
+                         take_packed<solve::BranchPoint>(state, "point"),
                          {}};
   if (pieces_->same_layout()) restart.memory = read_memory(state.group("memory"), restart.u.get());
   seeds_ = read_seeds(state.group("flips"), stored());

@@ -323,60 +323,6 @@ solve::Cycle read_cycle(const io::Group& group, const SharedRows& like) {
   return cycle;
 }
 
-void write_stability(io::Group& group, const solve::Stability& stability) {
-  std::vector<double> re, im;
-  for (const auto& v : stability.values) {
-    re.push_back(v.real());
-    im.push_back(v.imag());
-  }
-  group.put("real", re, "1", "eigenvalues or multipliers");
-  group.put("imag", im, "1", "their imaginary parts");
-  group.put("distance", stability.distance, "1", "from the border of stability");
-  group.set("neutral", stability.neutral);
-  group.set("missed", stability.missed);
-  group.set("unknown", stability.unknown ? 1 : 0);
-  std::vector<double> waves;
-  for (const auto& v : stability.mesh_waves) waves.insert(waves.end(), {v.real(), v.imag()});
-  group.put("mesh_waves", waves, "1", "left out: real and imaginary part of each");
-}
-
-solve::Stability read_stability(const io::Group& group) {
-  solve::Stability s;
-  const auto &re = group.reals("real"), &im = group.reals("imag");
-  for (std::size_t k = 0; k < re.size(); ++k) s.values.emplace_back(re[k], im[k]);
-  s.distance = group.reals("distance");
-  s.neutral = static_cast<int>(group.integer("neutral"));
-  s.missed = static_cast<int>(group.integer("missed"));
-  s.unknown = group.integer("unknown") != 0;
-  const auto& waves = group.reals("mesh_waves");
-  for (std::size_t k = 0; k + 1 < waves.size(); k += 2) s.mesh_waves.emplace_back(waves[k], waves[k + 1]);
-  return s;
-}
-
-void write_point(io::Group& group, const solve::BranchPoint& point) {
-  group.set("index", point.index);
-  group.set("filled", point.filled);
-  group.set("parameter", point.parameter);
-  group.set("slope", point.slope);
-  group.set("step", point.step);
-  group.set("newton_iterations", point.newton_iterations);
-  write_stability(group.child("stability"), point.stability);
-  group.put("monitors", point.monitors, "1", "functions whose zeros are located");
-}
-
-solve::BranchPoint read_point(const io::Group& group) {
-  solve::BranchPoint point;
-  point.index = static_cast<int>(group.integer("index"));
-  point.filled = static_cast<int>(group.integer("filled"));
-  point.parameter = group.real("parameter");
-  point.slope = group.real("slope");
-  point.step = group.real("step");
-  point.newton_iterations = static_cast<int>(group.integer("newton_iterations"));
-  point.stability = read_stability(group.group("stability"));
-  point.monitors = group.reals("monitors");
-  return point;
-}
-
 void write_summary(io::Group& group, const io::StudySummary& summary) {
   io::Summary one;
   one.set(summary);

@@ -90,10 +90,6 @@ private:
 /// Collective.
 void write_cycle(io::Group& group, const solve::Cycle& cycle, const SharedRows& like = {});
 [[nodiscard]] solve::Cycle read_cycle(const io::Group& group, const SharedRows& like = {});
-void write_stability(io::Group& group, const solve::Stability& stability);
-[[nodiscard]] solve::Stability read_stability(const io::Group& group);
-void write_point(io::Group& group, const solve::BranchPoint& point);
-[[nodiscard]] solve::BranchPoint read_point(const io::Group& group);
 void write_summary(io::Group& group, const io::StudySummary& summary);
 void read_summary(const io::Group& group, io::StudySummary& summary);
 

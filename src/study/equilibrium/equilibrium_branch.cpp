@@ -15,6 +15,7 @@
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
+#include "study/branch_state.hpp"
 #include "study/brief.hpp"
 #include "study/common.hpp"
 #include "study/cycle/coexisting.hpp"
@@ -208,7 +209,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   callbacks.stability = [&](Vec v) {
     // The place tells them apart where a step was taken otherwise than before: rounded, as decisions are.
     const double place = solve::last_entry(problem.comm(), v);
-    return pieces.stability(fmt::format("look {} at {:.10g}", ++looks, place), [&] {
+    return pieces.value(fmt::format("look {} at {:.10g}", ++looks, place), [&] {
       problem.to_state(v, x.get());
       return equilibrium_stability(*system, x.get());
     });

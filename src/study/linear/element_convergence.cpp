@@ -13,6 +13,7 @@
 #include "study/layout.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/shaft_modes.hpp"
+#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/describe.hpp"
@@ -107,6 +108,9 @@ struct Found {
   double elements = 0;
   std::vector<double> frequency, forward;
   Conditions condition;
+  void members(auto& archive) {
+    archive(elements, frequency, forward, condition.vectors, condition.stiffness, condition.mass);
+  }
 };
 
 // Order at which the last three meshes with equal ratios of parts converge.
@@ -155,25 +159,19 @@ StudyResult ElementConvergence::run(Context& context) {
     // The lowest that vibrate; growing ones that stand among the others are as near on every mesh.
     std::erase_if(modes, [](const ShaftMode& m) { return !spectral::vibrates(m.lambda); });
     const std::vector<double> mass = rotor::node_masses(train.rotor);
-    std::vector<double> out{static_cast<double>(train.rotor.segments.size()), 0, 0, 0};
-    if (options.condition) {
-      const Conditions c = conditions(system, x);
-      std::copy_n(std::array{c.vectors, c.stiffness, c.mass}.begin(), 3, out.begin() + 1);
+    Found out{static_cast<double>(train.rotor.segments.size()), {}, {}, {}};
+    if (options.condition) out.condition = conditions(system, x);
+    for (std::size_t k = 0; k < count; ++k) {
+      const bool known = k < modes.size();
+      out.frequency.push_back(known ? modes[k].lambda.imag() : io::no_value);
+      out.forward.push_back(known ? spectral::whirl_energy(modes[k].x, modes[k].y, mass).forward : io::no_value);
     }
-    for (std::size_t k = 0; k < count; ++k) out.push_back(k < modes.size() ? modes[k].lambda.imag() : io::no_value);
-    for (std::size_t k = 0; k < count; ++k)
-      out.push_back(k < modes.size() ? spectral::whirl_energy(modes[k].x, modes[k].y, mass).forward : io::no_value);
     results.progress(fmt::format("{}: {} meshes on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
-    return out;
+    return pack(out);
   };
-  const auto packed = distribute(layout, options.elements.size() * meshes, compute, pieces, "mesh",
-                                 {[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}});
+  const auto packed = distribute(layout, options.elements.size() * meshes, compute, pieces, "mesh", no_trail);
   std::vector<std::vector<Found>> all(options.elements.size());
-  for (std::size_t i = 0; i < packed.size(); ++i) {
-    const auto& p = packed[i];
-    const auto at = p.begin() + 4, next = at + options.count;
-    all[i / meshes].push_back({p[0], {at, next}, {next, p.end()}, {p[1], p[2], p[3]}});
-  }
+  for (std::size_t i = 0; i < packed.size(); ++i) all[i / meshes].push_back(unpack<Found>(packed[i]));
 
   auto& group = results.group();
   group.set("speed", options.speed.value);

@@ -63,27 +63,6 @@ std::vector<std::string> leave_out_poles(const std::vector<double>& frequencies,
   return reasons;
 }
 
-std::vector<double> packed_spectrum(const solve::Stability& found) {
-  const std::vector<double> growth = packed(growth_of(found));
-  std::vector<double> out{static_cast<double>(growth.size())};
-  out.insert(out.end(), growth.begin(), growth.end());
-  for (const std::complex<double> v : found.values) out.insert(out.end(), {v.real(), v.imag()});
-  return out;
-}
-
-std::vector<double> growth_in(const std::vector<double>& spectrum) {
-  if (spectrum.empty()) return {};
-  return {spectrum.begin() + 1, spectrum.begin() + 1 + static_cast<std::ptrdiff_t>(spectrum.front())};
-}
-
-std::vector<std::complex<double>> eigenvalues_in(const std::vector<double>& spectrum) {
-  std::vector<std::complex<double>> out;
-  if (spectrum.empty()) return out;
-  for (std::size_t k = 1 + static_cast<std::size_t>(spectrum.front()); k + 1 < spectrum.size(); k += 2)
-    out.emplace_back(spectrum[k], spectrum[k + 1]);
-  return out;
-}
-
 double nearest_to(double frequency, const std::vector<std::complex<double>>& eigenvalues) {
   double found = io::no_value;
   for (const std::complex<double> v : eigenvalues)

@@ -51,12 +51,6 @@ struct ResonancesBetween {
                                                        const std::vector<Endless>& endless,
                                                        std::vector<std::vector<std::complex<double>>>& found);
 
-/// What grows about an equilibrium, as packed(), and all eigenvalues [1/s], in numbers that ranks and pieces of a
-/// checkpoint hold; the other two take these apart, and find nothing in none.
-[[nodiscard]] std::vector<double> packed_spectrum(const solve::Stability& found);
-[[nodiscard]] std::vector<double> growth_in(const std::vector<double>& spectrum);
-[[nodiscard]] std::vector<std::complex<double>> eigenvalues_in(const std::vector<double>& spectrum);
-
 /// The frequency of an undamped resonance among the eigenvalues [1/s] on another mesh: the nearest one; NaN of none.
 [[nodiscard]] double nearest_to(double frequency, const std::vector<std::complex<double>>& eigenvalues);
 

@@ -15,6 +15,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/branch_state.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
@@ -24,6 +25,7 @@
 #include "study/linear/resonances.hpp"
 #include "study/linear/transfer_points.hpp"
 #include "study/lost_points.hpp"
+#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/contract/linear.hpp"
@@ -103,9 +105,9 @@ public:
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
-  // As packed_spectrum(); nothing if there is none.
-  std::vector<double> eigenvalues() {
-    return answer_of([&] { return packed_spectrum(equilibrium_stability(system_, walker_.at(options_.speed.value))); });
+  // Of the equilibrium; nothing where its eigenvalues are not found.
+  std::optional<solve::Stability> stability() {
+    return answer_of([&] { return std::optional(equilibrium_stability(system_, walker_.at(options_.speed.value))); });
   }
 
 private:
@@ -196,15 +198,13 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
       Transfers there(context, layout, options, outputs, meshes[i]);
       for (const std::size_t k : out.at) append(all, there.at({"machine"}, frequencies[k]).values);
       if (endless.empty()) return;
-      const std::vector<Complex> eigenvalues = eigenvalues_in(there.eigenvalues());
-      for (const Endless& u : endless) all.push_back(nearest_to(u.frequency, eigenvalues));
+      const auto found_there = there.stability().value_or(solve::Stability{});
+      for (const Endless& u : endless) all.push_back(nearest_to(u.frequency, found_there.values));
     });
     if (!answered) all.clear();
     return all;
   };
-  // Each mesh starts anew and leaves nothing behind.
-  const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
-  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "other mesh", none);
+  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "other mesh", no_trail);
   std::vector<double> here;
   for (const std::size_t k : out.at) append(here, found[k]);
   for (const Endless& u : endless) here.push_back(u.frequency);
@@ -267,20 +267,20 @@ StudyResult FrequencyResponse::run(Context& context) {
     auto& reasons = lost.emplace_back();
     for (auto& flat : distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
       reasons.push_back(take_reason(flat));
-      if (flat.empty()) flat.assign(3 * outputs.size() * options.inputs.size(), io::no_value);
-      Transfer there = unpack_transfer(flat);
+      const std::size_t responses = outputs.size() * options.inputs.size();
+      Transfer there{std::vector(responses, Complex(io::no_value, io::no_value)), std::vector(responses, io::no_value)};
+      if (!flat.empty()) there = unpack<Transfer>(flat);
       found.push_back(std::move(there.values));
       if (all.size() == 1) rounding.push_back(std::move(there.rounding));
     }
   }
 
-  const std::vector<double> eigen =
-      distribute(
-          layout, 1, [&](std::size_t) { return machine.eigenvalues(); }, pieces, "stability", machine.trail())
-          .front();
+  const auto one_machine = [&](std::size_t) { return pack(machine.stability()); };
+  const auto stability = unpack<std::optional<solve::Stability>>(
+      distribute(layout, 1, one_machine, pieces, "stability", machine.trail()).front());
   // Equilibria know of no loss factor: of such shafts nothing is said.
   if (context.machine.rotor.loss_factor == 0) {
-    put_growth(growth_in(eigen),
+    put_growth(stability ? std::optional(growth_of(*stability)) : std::nullopt,
                fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
                "No vibration settles into these transfer functions", summary);
   }
@@ -289,11 +289,11 @@ StudyResult FrequencyResponse::run(Context& context) {
     const auto one = [&](std::size_t i) { return answer_of([&] { return pack(machine.at({"machine"}, at[i])); }); };
     std::vector<Transfer> out;
     for (const auto& flat : distribute(layout, at.size(), one, pieces, "resonance", machine.trail()))
-      out.push_back(unpack_transfer(flat));
+      out.push_back(flat.empty() ? Transfer() : unpack<Transfer>(flat));
     return out;
   };
-  const auto [narrow, at_narrow, endless] =
-      between(frequencies, eigenvalues_in(eigen), search_of(context.machine.rotor, 0), beside);
+  const auto [narrow, at_narrow, endless] = between(frequencies, stability ? stability->values : std::vector<Complex>{},
+                                                    search_of(context.machine.rotor, 0), beside);
   lost[0] = leave_out_poles(frequencies, std::move(lost[0]), endless, all[0]);
   if (std::ranges::none_of(lost[0], &std::string::empty)) return results.finish(lost[0].front(), false);
   const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0], endless, lost[0]);

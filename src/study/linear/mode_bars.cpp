@@ -104,9 +104,7 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
       return all;
     });
   };
-  // Each mesh starts anew and leaves nothing behind.
-  const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
-  auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", none);
+  auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", no_trail);
   for (std::size_t i = 0; i < on_meshes.size(); ++i) {
     std::vector<double>& found = on_meshes[i];
     const bool of_shaft = i == meshes.size();

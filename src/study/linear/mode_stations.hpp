@@ -77,6 +77,7 @@ struct CrossingPoint {
   std::vector<std::complex<double>> shape{};  ///< as ShaftMode::both()
   double left = 0;                            ///< how far the border may be from there [rad/s]
   bool followed = true;  ///< false: between two stations, and the mode was not found nearer to the border
+  void members(auto& archive) { archive(speed, lambda, shape, left, followed); }
 };
 /// Secants between both ends, each with the modes at that speed, of which the one like the mode found last is taken,
 /// beginning with that at s1; where this loses it, with that at s0.

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/verdict.hpp"
@@ -24,6 +25,7 @@
 #include "study/linear/peak_list.hpp"
 #include "study/linear/shaft_alone.hpp"
 #include "study/linear/shaft_modes.hpp"
+#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "study/tabled_speeds.hpp"
 #include "whirl/deck/units.hpp"
@@ -100,27 +102,27 @@ StudyResult Modes::run(Context& context) {
     wanted += list.size();
     const auto compute = [&](std::size_t i) {
       ModeSearch here;
-      const auto found = shaft_modes(system, walker.at(list[i]), options.count, more, limit, here, options.condition);
-      auto modes = pack(found, here);
+      auto found = shaft_modes(system, walker.at(list[i]), options.count, more, limit, here, options.condition);
       ready += static_cast<std::size_t>(layout.count);
       results.progress(
           fmt::format("{}: {} of {} speeds{}, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted), wanted,
                       results.left(static_cast<double>(std::min(ready, wanted)) / static_cast<double>(wanted)),
                       deck::from_si(list[i], unit), unit, results.seconds()));
-      return modes;
+      return pack(FoundModes(std::move(found), std::move(here)));
     };
     const auto packed = distribute(layout, list.size(), compute, pieces,
                                    rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
     ++rounds;
     std::vector<Station> out;
     for (std::size_t i = 0; i < packed.size(); ++i) {
-      ModeSearch& search = searches[list[i]];
+      auto [modes, search] = unpack<FoundModes>(packed[i]);
       const bool asked = std::find(speeds.begin(), speeds.end(), list[i]) != speeds.end();
-      out.push_back({list[i], asked, unpack(packed[i], search)});
+      out.push_back({list[i], asked, std::move(modes)});
       out.back().listed = static_cast<std::size_t>(search.listed);
       out.back().overdamped = search.overdamped;
       missed.add(static_cast<int>(search.missed));
       if (search.gave_up > 0 && out.back().modes.size() < count) too_few = list[i];
+      searches[list[i]] = std::move(search);
     }
     return out;
   };
@@ -204,31 +206,23 @@ StudyResult Modes::run(Context& context) {
         lost_modes(stations, [&](const ShaftMode& m, double speed) { return surely_grows(m, speed, bars); });
     const auto look_up = [&](std::size_t i) {
       ModeSearch search;
-      auto all_there = modes_about(lost[i].guide, stations[lost[i].station].speed, search);
-      return pack(std::move(all_there), search);
+      return pack(modes_about(lost[i].guide, stations[lost[i].station].speed, search));
     };
     const auto found = distribute(layout, lost.size(), look_up, pieces, "onset", walker.trail());
-    for (std::size_t i = 0; i < lost.size(); ++i) {
-      ModeSearch search;
-      put_back(lost[i], unpack(found[i], search), stations);
-    }
+    for (std::size_t i = 0; i < lost.size(); ++i) put_back(lost[i], unpack<std::vector<ShaftMode>>(found[i]), stations);
     crossings = crossings_of(stations);
   }
   const auto refine = [&](std::size_t i) {
-    std::vector<double> missed_on_the_way;
-    const CrossingPoint at = locate(crossings[i], [&](double speed) {
+    // Other ranks and resumed runs see what is returned, and nothing else.
+    std::pair<CrossingPoint, std::vector<double>> found;
+    found.first = locate(crossings[i], [&](double speed) {
       ModeSearch search;
       auto there = crossings[i].outside ? modes_about(crossings[i].guide, speed, search)
                                         : shaft_modes(system, walker.at(speed), options.count, more, limit, search);
-      missed_on_the_way.push_back(search.missed);
+      found.second.push_back(search.missed);
       return there;
     });
-    // Other ranks and resumed runs see what is returned, and nothing else.
-    std::vector<double> out{at.speed, at.lambda.real(),        at.lambda.imag(),
-                            at.left,  at.followed ? 1.0 : 0.0, static_cast<double>(missed_on_the_way.size())};
-    out.insert(out.end(), missed_on_the_way.begin(), missed_on_the_way.end());
-    for (const auto& v : at.shape) out.insert(out.end(), {v.real(), v.imag()});
-    return out;
+    return pack(found);
   };
   const auto refined = distribute(layout, crossings.size(), refine, pieces, "critical", walker.trail());
   struct Critical {
@@ -241,10 +235,9 @@ StudyResult Modes::run(Context& context) {
   std::vector<CrossingPoint> points;
   std::vector<double> errors;  // of the speeds
   for (const std::vector<double>& r : refined) {
-    points.push_back({r[0], {r[1], r[2]}, {}, r[3], r[4] != 0});
-    auto at = r.begin() + 6;
-    for (const auto end = at + static_cast<std::ptrdiff_t>(r[5]); at != end; ++at) missed.add(static_cast<int>(*at));
-    for (; at != r.end(); at += 2) points.back().shape.emplace_back(at[0], at[1]);
+    auto [point, missed_on_the_way] = unpack<std::pair<CrossingPoint, std::vector<double>>>(r);
+    points.push_back(std::move(point));
+    for (const double each : missed_on_the_way) missed.add(static_cast<int>(each));
   }
   std::vector<LostCrossings> may_be_missing;
   if (options.range) may_be_missing = lost_crossings(stations);

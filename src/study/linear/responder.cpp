@@ -100,16 +100,4 @@ bool Responder::whole_spectra() const {
   return system_.size() <= spectral::EigenOptions{}.dense_below;
 }
 
-std::vector<double> pack(const SpectrumAt& spectrum) {
-  std::vector<double> flat{static_cast<double>(spectrum.growing)};
-  for (const Complex& v : spectrum.values) flat.insert(flat.end(), {v.real(), v.imag()});
-  return flat;
-}
-
-SpectrumAt unpack_spectrum(const std::vector<double>& flat) {
-  SpectrumAt out{static_cast<int>(flat.front()), {}};
-  for (std::size_t k = 1; k < flat.size(); k += 2) out.values.emplace_back(flat[k], flat[k + 1]);
-  return out;
-}
-
 }  // namespace whirl::study

@@ -16,9 +16,8 @@ namespace whirl::study {
 struct SpectrumAt {
   int growing = -1;                          ///< as Growth::known_count()
   std::vector<std::complex<double>> values;  ///< all that were found [1/s], both of each pair; empty: none could be had
+  void members(auto& archive) { archive(growing, values); }
 };
-[[nodiscard]] std::vector<double> pack(const SpectrumAt& spectrum);
-[[nodiscard]] SpectrumAt unpack_spectrum(const std::vector<double>& flat);
 
 /// All members are collective on the space of the layout.
 class Responder {

@@ -11,26 +11,6 @@
 
 namespace whirl::study {
 
-std::vector<double> pack(const ResponseAtSpeed& r) {
-  std::vector<double> flat{r.speed, r.largest};
-  for (const auto* place : {&r.nodes, &r.bearings})
-    for (const NodeMotion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
-  flat.insert(flat.end(), r.films.begin(), r.films.end());
-  return flat;
-}
-
-ResponseAtSpeed unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings) {
-  ResponseAtSpeed r;
-  r.speed = flat[0];
-  r.largest = flat[1];
-  for (std::size_t k = 0; k < n_nodes + n_bearings; ++k) {
-    const double* v = flat.data() + 2 + 4 * k;
-    (k < n_nodes ? r.nodes : r.bearings).push_back({{v[0], v[1]}, {v[2], v[3]}});
-  }
-  r.films.assign(flat.end() - static_cast<std::ptrdiff_t>(n_bearings), flat.end());
-  return r;
-}
-
 ResponseAtSpeed ResponseAtSpeed::without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings) {
   constexpr NodeMotion none{{io::no_value, io::no_value}, {io::no_value, io::no_value}};
   return {speed, io::no_value, std::vector(n_nodes, none), std::vector(n_bearings, none),

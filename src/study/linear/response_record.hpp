@@ -21,6 +21,7 @@ struct NodeMotion {
   [[nodiscard]] double backward() const { return std::abs(x - std::complex<double>(0, 1) * y) / 2; }
   [[nodiscard]] double semi_major() const { return forward() + backward(); }
   [[nodiscard]] double semi_minor() const { return forward() - backward(); }  ///< negative: backward orbit
+  void members(auto& archive) { archive(x, y); }
 };
 
 /// At one speed [rad/s].
@@ -32,11 +33,9 @@ struct ResponseAtSpeed {
 
   /// All but the speed not a number.
   [[nodiscard]] static ResponseAtSpeed without_answer(double speed, std::size_t n_nodes, std::size_t n_bearings);
+  void members(auto& archive) { archive(speed, largest, nodes, bearings, films); }
 };
 using Places = std::vector<NodeMotion> ResponseAtSpeed::*;
-
-[[nodiscard]] std::vector<double> pack(const ResponseAtSpeed& r);
-[[nodiscard]] ResponseAtSpeed unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings);
 
 /// Semi-major axes of one place over the speeds; zero below 1e-12 of the largest displacement, where they are rounding.
 [[nodiscard]] ResponseCurve curve_at(const std::vector<ResponseAtSpeed>& curve, Places places, std::size_t at);

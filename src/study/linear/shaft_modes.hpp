@@ -3,6 +3,7 @@
 
 #include <array>
 #include <complex>
+#include <utility>
 #include <vector>
 
 #include "whirl/system/rotor_system.hpp"
@@ -22,7 +23,7 @@ struct ShaftMode {
   /// Another mode has the same eigenvalue but for rounding, and they have no sense of whirl in common: any combination
   /// of the two is a mode. These are the two that turn most, backward first.
   bool either = false;
-  double blur = 0;        // as of spectral::Mode; not kept by pack()
+  double blur = 0;        // as of spectral::Mode; not sent to other ranks
   bool put_back = false;  // it is none of those asked for, but grows at a speed beside this one
 
   [[nodiscard]] bool grows() const { return !undamped && lambda.real() > 0; }
@@ -32,6 +33,9 @@ struct ShaftMode {
     return all;
   }
   [[nodiscard]] std::array<std::vector<std::complex<double>>*, 4> columns() { return {&x, &y, &slope_x, &slope_y}; }
+  void members(auto& archive) {
+    archive(lambda, undamped, participation, multiplicity, vectors, condition, extra, either, x, y, slope_x, slope_y);
+  }
 };
 
 /// What a search looked at and found beside the modes.
@@ -46,8 +50,10 @@ struct ModeSearch {
   double listed = 0;                               ///< the first modes: those asked for, and all that grow
   std::vector<std::complex<double>> overdamped{};  ///< imag >= 0, the slowest first
   std::vector<std::complex<double>> mesh_waves{};  ///< lightly damped or growing ones, which are none of the modes
-
-  static constexpr std::size_t size = 8;  ///< numbers of a fixed place
+  void members(auto& archive) {
+    archive(frequency, decay, counted, missed, gave_up, rest_multiplicity, rest_vectors, listed, overdamped,
+            mesh_waves);
+  }
 };
 
 /// The modes in which the machine takes part, the largest displacement one: first those that grow without oscillation
@@ -63,8 +69,7 @@ struct ModeSearch {
                                                  double max_frequency, ModeSearch& search, bool condition = false);
 inline constexpr double least_participation = 1e-3;
 
-/// Modes of one speed as numbers, to send them between ranks, and back.
-[[nodiscard]] std::vector<double> pack(std::vector<ShaftMode> modes, const ModeSearch& search);
-[[nodiscard]] std::vector<ShaftMode> unpack(const std::vector<double>& flat, ModeSearch& search);
+/// What shaft_modes() found at one speed, as ranks send it each other: without identities.
+using FoundModes = std::pair<std::vector<ShaftMode>, ModeSearch>;
 
 }  // namespace whirl::study

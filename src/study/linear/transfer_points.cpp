@@ -56,19 +56,6 @@ std::string label(const TransferOutput& output) {
   return place(output) + (output.quantity == TransferOutput::Quantity::displacement ? "" : "." + word(output.quantity));
 }
 
-std::vector<double> pack(const Transfer& transfer) {
-  std::vector<double> flat = transfer.rounding;
-  for (const Complex& g : transfer.values) flat.insert(flat.end(), {g.real(), g.imag()});
-  return flat;
-}
-
-Transfer unpack_transfer(const std::vector<double>& flat) {
-  const std::size_t n = flat.size() / 3;
-  Transfer out{{}, {flat.begin(), flat.begin() + static_cast<std::ptrdiff_t>(n)}};
-  for (std::size_t e = n; e < flat.size(); e += 2) out.values.emplace_back(flat[e], flat[e + 1]);
-  return out;
-}
-
 std::string unit_of(const TransferOutput& output, const TransferInput& input) {
   std::string below = is_slope(input.direction) ? "N m" : "N";
   if (output.quantity == TransferOutput::Quantity::velocity) below += " s";

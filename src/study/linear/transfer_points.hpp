@@ -25,10 +25,8 @@ struct Transfer {
   /// What rounding may leave of each: 1e-12 of the largest motion of its kind, a displacement or a slope, that the
   /// input makes anywhere in the machine. A smaller value is no answer.
   std::vector<double> rounding;
+  void members(auto& archive) { archive(values, rounding); }
 };
-
-[[nodiscard]] std::vector<double> pack(const Transfer& transfer);
-[[nodiscard]] Transfer unpack_transfer(const std::vector<double>& flat);
 
 /// Per frequency: a matrix, and what rounding leaves of one.
 using Matrices = std::vector<std::vector<std::complex<double>>>;

@@ -28,6 +28,7 @@
 #include "study/linear/response_record.hpp"
 #include "study/linear/stable_speeds.hpp"
 #include "study/lost_points.hpp"
+#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "study/tabled_speeds.hpp"
 #include "whirl/core/error.hpp"
@@ -104,7 +105,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
     for (auto& flat : distribute(layout, speeds.size(), compute, pieces, piece, which.trail())) {
       std::string reason = take_reason(flat);
       if (reason.empty())
-        out.push_back(unpack(flat, nodes.size(), names.size()));
+        out.push_back(unpack<ResponseAtSpeed>(flat));
       else
         lost[speeds[k]] = std::move(reason);
       ++k;
@@ -178,7 +179,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
     const auto found =
         distribute(layout, speeds.size(), compute, pieces, fmt::format("{} stability", ++calls), machine.trail());
     for (std::size_t i = 0; i < speeds.size(); ++i) {
-      SpectrumAt here = unpack_spectrum(found[i]);
+      auto here = unpack<SpectrumAt>(found[i]);
       growing[speeds[i]] = here.growing;
       if (!here.values.empty()) spectra[speeds[i]] = std::move(here.values);
     }

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "study/brief.hpp"
-#include "study/common.hpp"
-#include "study/growth.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/motion/linearity_run.hpp"
+#include "study/packed.hpp"
 #include "study/pieces.hpp"
 
 namespace whirl::study {
@@ -18,29 +17,28 @@ StudyResult Linearity::run(Context& context) {
   const Layout layout = plan(context, Sharing::speeds);
   LinearityRunner runner(context, layout, options);
   Pieces pieces(results, context.resume, options.checkpoint);
-  const Trail nothing{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
   const auto level = [&](std::size_t k) {
-    return runner.record(options.levels[k], [&](double share) {
+    return pack(runner.record(options.levels[k], [&](double share) {
       results.progress(fmt::format("{}: {:.4g} N, {:.0f} %, {:.1f} s", results.summary().name, options.levels[k],
                                    100 * share, results.seconds()));
-    });
+    }));
   };
   std::vector<LinearityRecord> records;
-  for (const auto& flat : distribute(layout, options.levels.size(), level, pieces, "level", nothing))
-    records.push_back(LinearityRunner::unpack(flat, options));
+  for (const auto& flat : distribute(layout, options.levels.size(), level, pieces, "level", no_trail))
+    records.push_back(unpack<LinearityRecord>(flat));
   const double resolution = records.front().spectra.resolution;
   const auto lines = static_cast<std::size_t>(std::floor(options.highest / resolution * (1 + 1e-12)));
   const auto linear = distribute(
       layout, lines, [&](std::size_t k) { return runner.linear(resolution * (static_cast<double>(k) + 1)); }, pieces,
-      "line", nothing);
+      "line", no_trail);
   // Equilibria know of no loss factor: of such shafts nothing is asked.
-  if (context.machine.rotor.loss_factor == 0)
-    put_growth(distribute(
-                   layout, 1, [&](std::size_t) { return runner.growing(); }, pieces, "stability", nothing)
-                   .front(),
+  if (context.machine.rotor.loss_factor == 0) {
+    const auto one_machine = [&](std::size_t) { return pack(runner.growing()); };
+    put_growth(unpack<std::optional<Growth>>(distribute(layout, 1, one_machine, pieces, "stability", no_trail).front()),
                fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
                "No vibration settles into the linear transfer functions that the motion is compared with",
                results.summary());
+  }
   put_linearity(context, options, records, linear, runner.node());
   results.summary().points = static_cast<long>(lines);
   return results.finish("completed", true);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "study/bars/summary_bars.hpp"
-#include "study/growth.hpp"
 #include "study/make_plant.hpp"
 #include "study/motion/forces.hpp"
 #include "study/state_rows.hpp"
@@ -58,7 +56,7 @@ std::array<double, 2> LinearityRunner::watched(Vec x) const {
   return out;
 }
 
-std::vector<double> LinearityRunner::record(double level, const std::function<void(double)>& say) {
+LinearityRecord LinearityRunner::record(double level, const std::function<void(double)>& say) {
   transient::Forces forces;
   for (int d = 0; d < 2; ++d) {
     std::vector<transient::Forces::Entry> column;
@@ -88,63 +86,30 @@ std::vector<double> LinearityRunner::record(double level, const std::function<vo
     }
     if (k % 1024 == 0) say(static_cast<double>(k) / static_cast<double>(settled + count));
   }
-  std::vector<double> flat{0, static_cast<double>(integrator.work().steps),
-                           static_cast<double>(integrator.work().rejected)};
-  for (const auto& s : record) {
+  LinearityRecord out;
+  out.steps = static_cast<double>(integrator.work().steps);
+  out.rejected = static_cast<double>(integrator.work().rejected);
+  for (std::size_t s = 0; s < signals; ++s) {
+    const double count_here = static_cast<double>(record[s].size());
     double mean = 0, square = 0;
-    for (const double v : s) mean += v / static_cast<double>(s.size());
-    for (const double v : s) square += (v - mean) * (v - mean) / static_cast<double>(s.size());
-    flat.insert(flat.end(), {mean, std::sqrt(square)});
+    for (const double v : record[s]) mean += v / count_here;
+    for (const double v : record[s]) square += (v - mean) * (v - mean) / count_here;
+    (s < 2 ? out.force[s] : out.rms[s - 2]) = std::sqrt(square);
+    if (s >= 2) out.mean[s - 2] = mean;
   }
   for (std::size_t k = 0; k < record[0].size(); ++k)
-    flat[0] = std::max(flat[0], std::hypot(record[2][k] - flat[7], record[3][k] - flat[9]));
-  const std::size_t kept = std::min(excerpt_samples, record[0].size());
-  flat.push_back(static_cast<double>(kept));
-  for (std::size_t k = 0; k < kept; ++k)
-    for (const auto& s : record) flat.push_back(s[k]);
-  auto spectra = transient::spectral_matrix(record, 1 / rate, {.segments = options_.segments});
+    out.peak = std::max(out.peak, std::hypot(record[2][k] - out.mean[0], record[3][k] - out.mean[1]));
+  for (std::size_t k = 0; k < std::min(excerpt_samples, record[0].size()); ++k)
+    for (const auto& s : record) out.excerpt.push_back(s[k]);
+  auto& spectra = out.spectra;
+  spectra = transient::spectral_matrix(record, 1 / rate, {.segments = options_.segments});
   // The force is what stands between its samples as well.
   for (std::size_t k = 0; k < spectra.lines.size(); ++k) {
     const double gain = transient::interpolation_gain(noise_of(options_, level, 0), spectra.frequency(k));
     spectra.lines[k].topRows(2) *= gain;
     spectra.lines[k].leftCols(2) *= gain;
   }
-  flat.insert(flat.end(), {spectra.resolution, static_cast<double>(spectra.samples), spectra.averages,
-                           static_cast<double>(spectra.lines.size())});
-  for (const Eigen::MatrixXcd& m : spectra.lines)
-    for (Eigen::Index i = 0; i < m.size(); ++i) flat.insert(flat.end(), {m.data()[i].real(), m.data()[i].imag()});
-  return flat;
-}
-
-LinearityRecord LinearityRunner::unpack(const std::vector<double>& flat, const LinearityOptions& options) {
-  LinearityRecord r;
-  auto at = flat.begin();
-  r.peak = *at++;
-  r.steps = *at++;
-  r.rejected = *at++;
-  for (std::size_t s = 0; s < signals; ++s) {
-    const double mean = *at++, rms = *at++;
-    if (s < 2)
-      r.force[s] = rms;
-    else {
-      r.mean[s - 2] = mean;
-      r.rms[s - 2] = rms;
-    }
-  }
-  const auto kept = static_cast<std::ptrdiff_t>(*at++) * static_cast<std::ptrdiff_t>(signals);
-  r.excerpt.assign(at, at + kept);
-  at += kept;
-  r.spectra.resolution = *at++;
-  r.spectra.samples = static_cast<int>(*at++);
-  r.spectra.averages = *at++;
-  r.spectra.segments = options.segments;
-  r.spectra.lines.assign(static_cast<std::size_t>(*at++), Eigen::MatrixXcd(signals, signals));
-  for (Eigen::MatrixXcd& m : r.spectra.lines)
-    for (Eigen::Index i = 0; i < m.size(); ++i) {
-      const double re = *at++, im = *at++;
-      m.data()[i] = {re, im};
-    }
-  return r;
+  return out;
 }
 
 std::vector<double> LinearityRunner::linear(double frequency) {
@@ -172,9 +137,4 @@ std::vector<double> LinearityRunner::linear(double frequency) {
   }
   return out;
 }
-
-std::vector<double> LinearityRunner::growing() {
-  return answer_of([&] { return packed(growth_at(system_, rest_.get())); });
-}
-
 }  // namespace whirl::study

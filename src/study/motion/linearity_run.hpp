@@ -4,9 +4,11 @@
 #include <array>
 #include <complex>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "study/bars/film_limit.hpp"
+#include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/motion/linearity.hpp"
 #include "whirl/solve/newton/frequency_resolvent.hpp"
@@ -25,6 +27,15 @@ struct LinearityRecord {
   double steps = 0, rejected = 0;       ///< in time
   std::vector<double> excerpt;          ///< beginning of the record, [sample][signal]
   transient::SpectralMatrix spectra;    ///< of the signals
+  void members(auto& archive) {
+    archive(peak, mean, rms, force, steps, rejected, excerpt);
+    archive(spectra.resolution, spectra.samples, spectra.averages, spectra.segments);
+    std::size_t lines = spectra.lines.size();
+    archive(lines);
+    spectra.lines.resize(lines, Eigen::MatrixXcd(signals, signals));
+    for (Eigen::MatrixXcd& m : spectra.lines)
+      for (Eigen::Index i = 0; i < m.size(); ++i) archive(m.data()[i]);
+  }
 };
 
 /// The rotor, its equilibrium and the place that is excited and watched. All members are collective on the ranks that
@@ -33,14 +44,12 @@ class LinearityRunner {
 public:
   LinearityRunner(const Context& context, const Layout& layout, const LinearityOptions& options);
 
-  /// The record at a level [N], packed for LinearityRunner::unpack(); `say` gets the share that is done. Throws
-  /// core::DomainError where a film is left.
-  [[nodiscard]] std::vector<double> record(double level, const std::function<void(double)>& say);
-  [[nodiscard]] static LinearityRecord unpack(const std::vector<double>& flat, const LinearityOptions& options);
+  /// The record at a level [N]; `say` gets the share that is done. Throws core::DomainError where a film is left.
+  [[nodiscard]] LinearityRecord record(double level, const std::function<void(double)>& say);
   /// Displacement i by force j about the equilibrium at `frequency` [Hz]: re, im of xx, xy, yx, yy [m/N].
   [[nodiscard]] std::vector<double> linear(double frequency);
-  /// What grows about the equilibrium, as packed(); empty if that could not be computed.
-  [[nodiscard]] std::vector<double> growing();
+  /// What grows about the equilibrium, if that could be computed.
+  [[nodiscard]] std::optional<Growth> growing() { return growth_at(system_, rest_.get()); }
   [[nodiscard]] int node() const { return node_; }
 
 private:

@@ -185,8 +185,7 @@ StudyResult Stress::run(Context& context) {
   Vec at = here.rest();
   FilmLimit(here.system().places()).warn(here.system().observe(at).film_thickness, "at rest", summary);
   if (context.machine.rotor.loss_factor == 0)  // equilibria know of none
-    put_growth(packed(growth_at(here.system(), at)), where, "The shaft does not stay where these stresses hold",
-               summary);
+    put_growth(growth_at(here.system(), at), where, "The shaft does not stay where these stresses hold", summary);
   const std::vector<Section> sections = sections_of(context.machine.rotor);
   const std::vector<BendingAt> ends = here.ends();
   put_stresses(summary, sections, ends, options);
