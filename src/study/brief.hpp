@@ -1,7 +1,6 @@
 #pragma once
 // How studies write their briefs (io/brief.hpp): from the named values of their summaries.
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

@@ -2,13 +2,11 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
-#include "branch_state.hpp"
 #include "first_guess.hpp"
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/unresolved.hpp"

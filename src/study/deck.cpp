@@ -6,12 +6,10 @@
 #include <unordered_map>
 
 #include "common.hpp"
-#include "cost.hpp"
 #include "make_plant.hpp"
 #include "premises.hpp"
 #include "sense.hpp"
 #include "whirl/deck/load.hpp"
-#include "whirl/deck/output.hpp"
 #include "whirl/film/contract/describe.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/rotor/advice.hpp"

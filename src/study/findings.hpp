@@ -10,7 +10,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"

@@ -1,7 +1,6 @@
 #include "job_queue.hpp"
 
 #include <algorithm>
-#include <exception>
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"

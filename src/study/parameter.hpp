@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "whirl/deck/description.hpp"
 #include "whirl/system/options.hpp"

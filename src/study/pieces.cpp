@@ -1,6 +1,5 @@
 #include "pieces.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "study/cycle/cycle_record.hpp"

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "study/bearing/gas_point.hpp"
-#include "whirl/film/contract/facts.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::study {

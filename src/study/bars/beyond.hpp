@@ -2,7 +2,6 @@
 // What a bifurcation means for the machine, in words: the one place that says so, for screen, report and pictures.
 
 #include <string>
-#include <vector>
 
 #include "study/bars/verdict.hpp"
 #include "whirl/io/summary.hpp"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "study/bars/summary_bars.hpp"
 #include "whirl/deck/codecs.hpp"

@@ -1,7 +1,6 @@
 #include "study/bars/summary_bars.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "whirl/core/error.hpp"

@@ -1,4 +1,3 @@
-#include <fmt/core.h>
 
 #include "study/bearing/bearing_map.hpp"
 #include "study/bearing/held_film.hpp"

@@ -10,7 +10,6 @@
 
 #include "study/bars/summary_bars.hpp"
 #include "whirl/core/agree.hpp"
-#include "whirl/core/error.hpp"
 
 namespace whirl::study {
 

@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <cmath>
-
 #include "study/bearing/gas_bearing.hpp"
 #include "study/bearing/held_film.hpp"
 #include "whirl/film/contract/gas.hpp"

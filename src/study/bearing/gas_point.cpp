@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "whirl/core/error.hpp"
 #include "whirl/film/contract/options.hpp"
 
 namespace whirl::study {

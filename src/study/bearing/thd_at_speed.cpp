@@ -1,7 +1,6 @@
 #include "study/bearing/thd_at_speed.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <set>
 

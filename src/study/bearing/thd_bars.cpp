@@ -11,7 +11,6 @@
 
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/held_film.hpp"
-#include "study/bearing/thd_record.hpp"
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
 #include "whirl/core/agree.hpp"

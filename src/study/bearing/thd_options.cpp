@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "study/bearing/held_film.hpp"
 #include "study/bearing/thd_at_speed.hpp"

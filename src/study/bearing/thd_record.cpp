@@ -1,7 +1,6 @@
 #include "study/bearing/thd_record.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "study/bearing/thd_shown.hpp"
 #include "study/findings.hpp"

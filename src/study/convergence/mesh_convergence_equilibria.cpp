@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "study/bifurcation.hpp"
-#include "study/common.hpp"
 #include "study/convergence/shared_convergence.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
 #include "study/located.hpp"

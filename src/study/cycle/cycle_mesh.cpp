@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "study/bars/summary_bars.hpp"
 #include "study/cycle/cycle_follower.hpp"

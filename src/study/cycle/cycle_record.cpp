@@ -9,7 +9,6 @@
 #include "study/bars/film_limit.hpp"
 #include "study/bars/mesh_wave.hpp"
 #include "study/state_rows.hpp"
-#include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {

@@ -1,7 +1,5 @@
 // Where branches of cycles begin: at an equilibrium, at a Hopf point, at a flip.
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

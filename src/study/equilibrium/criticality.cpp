@@ -3,12 +3,10 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
-#include "whirl/core/error.hpp"
 
 namespace whirl::study {
 

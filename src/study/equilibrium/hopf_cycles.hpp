@@ -3,10 +3,8 @@
 // only.
 
 #include <array>
-#include <complex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"

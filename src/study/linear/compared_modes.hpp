@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <complex>
-#include <vector>
 
 #include "whirl/system/rotor_system.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "study/cost.hpp"
 #include "study/linear/element_convergence.hpp"
 #include "whirl/rotor/describe.hpp"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/shaft_mesh.hpp"

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "study/linear/separation.hpp"
-#include "whirl/deck/units.hpp"
 
 namespace whirl::study {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "study/linear/response_peaks.hpp"
-#include "study/linear/separation.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/summary.hpp"
 

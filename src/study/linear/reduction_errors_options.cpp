@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "study/cost.hpp"
 #include "study/linear/reduction_errors.hpp"
 #include "whirl/film/contract/describe.hpp"
 

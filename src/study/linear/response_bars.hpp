@@ -1,7 +1,6 @@
 #pragma once
 // Error bars of the peaks of a linear response.
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <string>

@@ -7,7 +7,6 @@
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/verdict.hpp"
-#include "study/common.hpp"
 #include "study/layout.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/divide.hpp"

@@ -8,9 +8,7 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "study/growth.hpp"
 #include "whirl/deck/units.hpp"

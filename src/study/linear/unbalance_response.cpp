@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
-#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>

@@ -2,7 +2,6 @@
 // Records of a rotor under two random forces, and the linear transfer functions beside them.
 
 #include <array>
-#include <complex>
 #include <functional>
 #include <optional>
 #include <vector>

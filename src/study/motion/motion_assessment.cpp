@@ -10,6 +10,7 @@
 #include "study/motion/short_time.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/transient/analysis/rotation.hpp"
+#include "whirl/transient/analysis/spectrum.hpp"
 
 namespace whirl::study {
 namespace {

@@ -11,7 +11,6 @@
 #include "whirl/system/plant.hpp"
 #include "whirl/transient/analysis/classify.hpp"
 #include "whirl/transient/analysis/exponents.hpp"
-#include "whirl/transient/analysis/spectrum.hpp"
 
 namespace whirl::study {
 

@@ -1,6 +1,5 @@
 #include "study/motion/short_time.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <complex>
-#include <span>
 #include <vector>
 
 #include "whirl/rotor/options.hpp"

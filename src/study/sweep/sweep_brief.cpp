@@ -11,7 +11,6 @@
 #include <regex>
 #include <set>
 #include <span>
-#include <string_view>
 #include <utility>
 
 #include "study/brief.hpp"
