@@ -8,8 +8,6 @@
 #include <limits>
 #include <string>
 
-#include "study/linear/mode_margins.hpp"
-
 using whirl::study::separation;
 
 TEST(Separation, IsCountedFromTheNearerBorder) {

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "study/linear/endless.hpp"
-
 namespace whirl::study {
 namespace {
 

@@ -9,7 +9,6 @@
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bearing/coefficient_names.hpp"
 #include "study/bearing/coefficients_at.hpp"
 #include "study/bearing/enforced_motion.hpp"
 #include "study/bearing/held_film.hpp"

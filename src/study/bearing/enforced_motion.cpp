@@ -8,10 +8,10 @@
 #include <map>
 #include <utility>
 
-#include "study/bearing/coefficient_names.hpp"
 #include "whirl/film/use/enforced.hpp"
 
 namespace whirl::study {
+
 namespace {
 
 using All = std::vector<std::vector<std::vector<EnforcedAt>>>;  // [speed][frequency][amplitude]

@@ -52,4 +52,16 @@ void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, co
                          const std::vector<std::vector<std::vector<EnforcedAt>>>& found, const Bars* bars,
                          std::size_t next);
 
+/// xx, xy, ..., and with slopes x.slope_x, ...; what stands `between` only there.
+inline constexpr std::array<const char*, 4> port_words = {"x", "y", "slope_x", "slope_y"};
+[[nodiscard]] constexpr std::size_t slopes_in(std::size_t i, std::size_t j) {
+  return (i > 1 ? 1U : 0U) + (j > 1 ? 1U : 0U);
+}
+[[nodiscard]] inline std::string pair_name(std::size_t i, std::size_t j, const char* between) {
+  return std::string(port_words[i]) + (slopes_in(i, j) == 0 ? "" : between) + port_words[j];
+}
+/// By the number of slopes in a pair.
+inline constexpr std::array<const char*, 3> stiffness_units = {"N/m", "N", "N m"},
+                                            damping_units = {"N s/m", "N s", "N m s"};
+
 }  // namespace whirl::study

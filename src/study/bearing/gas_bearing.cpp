@@ -9,7 +9,7 @@
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bearing/gas_rows.hpp"
+#include "study/bearing/gas_point.hpp"
 #include "study/bearing/held_film.hpp"
 #include "study/common.hpp"
 #include "study/lost_points.hpp"

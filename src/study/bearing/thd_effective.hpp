@@ -1,5 +1,5 @@
 #pragma once
-// The film of one temperature that comes closest to a film with heat, and how wrong it is.
+// Films of one temperature beside a film with heat.
 
 #include "study/bearing/thd_at_speed.hpp"
 #include "whirl/io/record.hpp"
@@ -15,5 +15,11 @@ namespace whirl::study {
 /// warning; one that is zero, as the power loss at rest, too. Collective. Cost: 10 to 30 flows of a film that is
 /// solved.
 void put_effective(io::Group& group, io::StudySummary& summary, ThdAtSpeed& film, double ambient);
+
+/// Puts the temperature at which the heat balance of the whole film is even, at the place of the journal that `film`
+/// has, and what a film of that temperature carries and loses. Walls that conduct have the mean temperature of their
+/// surfaces. Puts nothing of a gas, whose Prandtl number is too small, and of a film that dissipates nothing.
+/// Collective.
+void put_lumped(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& options, const film::Geometry& geometry);
 
 }  // namespace whirl::study

@@ -9,8 +9,6 @@
 
 #include "study/bearing/thd_effective.hpp"
 #include "study/bearing/thd_load.hpp"
-#include "study/bearing/thd_lumped.hpp"
-#include "study/bearing/thd_properties.hpp"
 #include "study/bearing/thd_record.hpp"
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"

@@ -1,12 +1,14 @@
 #pragma once
-// The numbers of a film with heat: those of one speed, those over the speed, and how they change with the mesh.
+// Named values of a film with heat, its row in the table over the speed, and what its fluid is over the temperature.
 
 #include <span>
 #include <string>
 #include <vector>
 
 #include "study/bearing/thd_load.hpp"
+#include "study/bearing/thd_study.hpp"
 #include "study/pieces.hpp"
+#include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 
 namespace whirl::study {
@@ -36,5 +38,12 @@ void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options,
 
 /// Names of those extremes of put_thd_values() that stand at an orifice or at a node beside one. Collective.
 [[nodiscard]] std::vector<std::string> extremes_at_orifices(ThdAtSpeed& film);
+
+/// Puts the table `properties` into `group`: for each of the options' `temperatures` viscosity Pa s, density kg/m^3 at
+/// the pressure of the ambient, conductivity W/(m K), heat capacity J/(kg K), Prandtl number, of a gas the ratio of
+/// specific heats c/(c - r), and the clearance m that bush and journal leave when both have this temperature
+/// throughout. A part without `growth` keeps its size. Nothing without temperatures. Source: Skarolek (2011) fig. 1.9.
+void put_properties(io::Group& group, const ThdOptions& options, const thermal::Fluid& fluid,
+                    const film::Geometry& geometry);
 
 }  // namespace whirl::study

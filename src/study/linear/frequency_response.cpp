@@ -17,7 +17,6 @@
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
-#include "study/linear/endless.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/passed_over.hpp"
 #include "study/linear/resonances.hpp"

@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/reduction_error.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/common.hpp"
 #include "whirl/deck/codecs.hpp"
 #include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/divide.hpp"
@@ -17,6 +17,7 @@
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
+
 namespace {
 
 constexpr std::size_t most_speeds = 5;
@@ -196,6 +197,29 @@ void ModeBars::put(io::Group& spectrum, const std::vector<std::int64_t>& ids, co
   spectrum.put("damping_real_uncertainty", column[0], "1/s", "estimated error from the meshes of films and shaft");
   spectrum.put("frequency_uncertainty", column[1], "rad/s", "likewise");
   spectrum.put("log_decrement_uncertainty", column[2], "1", "likewise");
+}
+
+ModeReduction::ModeReduction(const system::RotorSystem& system, Walker& walker,
+                             const std::vector<SampledModes>& sampled) {
+  if (!has_reduction_errors(system)) return;
+  for (const SampledModes& at : sampled) {
+    if (at.speed <= 0) continue;  // systems turn
+    std::vector<std::complex<double>> values;
+    for (const spectral::ModePoint& m : at.modes) values.push_back(m.lambda);
+    auto errors = answer_of([&] { return reduction_errors(system, walker.at(at.speed), values); });
+    if (!errors.empty()) of_[at.speed] = std::move(errors);
+  }
+}
+
+void ModeReduction::put(io::StudySummary& summary, double speed, std::size_t k) {
+  const auto found = of_.find(speed);
+  if (found == of_.end()) return;
+  const std::complex<double> error = found->second[k];
+  summary.modes.back().more["real_reduction_error"] = error.real();
+  summary.modes.back().more["imag_reduction_error"] = error.imag();
+  if (!std::isnan(largest_))
+    largest_ = std::isfinite(std::abs(error)) ? std::max(largest_, std::abs(error)) : std::abs(error);
+  summary.set("reduction.largest_error", largest_, "rad/s");
 }
 
 }  // namespace whirl::study

@@ -1,7 +1,8 @@
 #pragma once
-// Error bars of eigenvalues over speed.
+// Error bars of eigenvalues over speed, and what the reduction of the shaft did to them.
 
 #include <array>
+#include <complex>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -10,8 +11,10 @@
 #include <vector>
 
 #include "study/bars/unresolved.hpp"
+#include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/pieces.hpp"
+#include "whirl/io/summary.hpp"
 #include "whirl/spectral/follow.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -66,6 +69,21 @@ private:
   double shaft_error_ = 0;                        // zero: not known
   std::map<std::string, std::set<int>> without_;  // modes that results show, by why they have no bars
   bool several_ = false;                          // speeds, at which they were computed
+};
+
+/// Errors of the reduction at the speeds that have bars; nothing where the shaft is whole.
+class ModeReduction {
+public:
+  /// The modes at some speeds, whose equilibria the walker finds again. Collective.
+  ModeReduction(const system::RotorSystem& system, Walker& walker, const std::vector<SampledModes>& sampled);
+  /// "real_reduction_error" and "imag_reduction_error" [rad/s] of the mode that was added last, number k at its speed,
+  /// and "reduction.largest_error" [rad/s], the largest modulus so far, not a number once
+  /// an error is unknown.
+  void put(io::StudySummary& summary, double speed, std::size_t k);
+
+private:
+  std::map<double, std::vector<std::complex<double>>> of_;
+  double largest_ = 0;
 };
 
 }  // namespace whirl::study

@@ -1,12 +1,15 @@
 #pragma once
-// Ranges of speed that begin or end on the flank of a peak, or where beams end.
+// What a range of speeds leaves open: speeds without a response, ends on the flank of a peak, and where beams end.
 
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "study/linear/resonances.hpp"
 #include "study/linear/response_places.hpp"
 #include "study/linear/response_record.hpp"
+#include "whirl/io/summary.hpp"
 
 namespace whirl::study {
 
@@ -26,5 +29,17 @@ namespace whirl::study {
 /// What the beams of a shaft cannot do in a response up to `last` [rad/s], a line each: their mesh is too coarse, or
 /// beam theory ends.
 [[nodiscard]] std::vector<std::string> beyond_beams(const rotor::Options& rotor, double last, const std::string& unit);
+
+/// Speeds [rad/s] and why they have no response.
+using LostSpeeds = std::map<double, std::string>;
+
+/// Whether a response is but rounding because it stands at an undamped resonance: one of the spectrum at its speed is
+/// no farther away than at_pole, and beside it, where `at` gives the response, the motion is less than a tenth.
+[[nodiscard]] bool stands_on_pole(const ResponseAtSpeed& here, const Spectra& spectra, const ResonanceSearch& search,
+                                  const std::function<std::vector<ResponseAtSpeed>(const std::vector<double>&)>& at);
+
+/// Makes the `lost` speeds of a curve rows without numbers and warns of them.
+void put_lost(std::vector<ResponseAtSpeed>& curve, const LostSpeeds& lost, io::StudySummary& summary,
+              const std::string& unit);
 
 }  // namespace whirl::study

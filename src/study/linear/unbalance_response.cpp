@@ -16,7 +16,6 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
-#include "study/linear/lost_speeds.hpp"
 #include "study/linear/open_ends.hpp"
 #include "study/linear/peak_list.hpp"
 #include "study/linear/resonances.hpp"

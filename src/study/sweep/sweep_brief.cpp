@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "study/brief.hpp"
-#include "study/sweep/value_words.hpp"
 #include "study/sweep/verdict_words.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the studies of one variant of a sweep say of its stability.
+// The words of a sweep: names of its values and variants, and what the studies of one variant say of its stability.
 
 #include <span>
 #include <string>
@@ -24,5 +24,14 @@ struct VariantVerdict {
 /// Of several studies: the words once if all that know of stability agree, else "STUDY: words" for each. What was found
 /// is the heaviest; unstable in part where one study finds it unstable and another one stable somewhere.
 [[nodiscard]] VariantVerdict verdict_of(std::span<const io::StudySummary> studies);
+
+/// Values that answer what was asked; all of them stand in the table of the sweep.
+[[nodiscard]] bool answers(const std::string& value);
+
+/// The name of a value as few words. `speed_unit`: of a number in the name that is a speed, empty if it is not known.
+[[nodiscard]] std::string in_short(std::string value, const std::string& speed_unit);
+
+/// Words with `digits` digits of each long decimal number: "x0.9333" of "x0.933333333333".
+[[nodiscard]] std::string with_digits(const std::string& words, int digits);
 
 }  // namespace whirl::study
