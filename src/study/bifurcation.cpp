@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/columns.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/system/dimensionless_groups.hpp"
 
@@ -87,21 +88,14 @@ double more_of(const io::Bifurcation& b, const std::string& name) {
 }
 
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all) {
-  std::vector<std::string> type;
-  std::vector<double> parameter, uncertainty, angle;
-  for (const auto& b : all) {
-    type.emplace_back(io::name_of(b.type));
-    parameter.push_back(b.value);
-    uncertainty.push_back(b.uncertainty);
-    const auto at = b.more.find("angle_rad");
-    angle.push_back(at == b.more.end() ? 0.0 : at->second);
-  }
   const std::string unit = all.empty() ? "1" : all.front().unit;
   auto& g = group.child("bifurcations");
-  g.put("type", type, "kind of bifurcation");
-  g.put("parameter", parameter, unit, "where");
-  g.put("uncertainty", uncertainty, unit, "estimated error from film mesh, time mesh and location");
-  g.put("angle", angle, "rad", "angle of the critical multiplier");
+  using B = io::Bifurcation;
+  const auto angle = [](const B& b) { return b.more.contains("angle_rad") ? b.more.at("angle_rad") : 0.0; };
+  g.put("type", column(all, [](const B& b) { return io::name_of(b.type); }), "kind of bifurcation");
+  g.put("parameter", column(all, &B::value), unit, "where");
+  g.put("uncertainty", column(all, &B::uncertainty), unit, "estimated error from film mesh, time mesh and location");
+  g.put("angle", column(all, angle), "rad", "angle of the critical multiplier");
 }
 
 }  // namespace whirl::study

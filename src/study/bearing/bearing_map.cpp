@@ -13,6 +13,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/bearing_mapper.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -25,14 +26,6 @@ namespace {
 
 constexpr std::array<const char*, 4> entries = {"xx", "xy", "yx", "yy"};
 
-// One column of the locus.
-template <class Value>
-std::vector<double> column(const std::vector<MapPoint>& locus, const Value& value) {
-  std::vector<double> out;
-  for (const MapPoint& p : locus) out.push_back(value(p));
-  return out;
-}
-
 void put_locus(io::Group& group, const std::vector<MapPoint>& locus, const std::vector<double>& frequencies) {
   using P = MapPoint;
   auto& table = group.child("locus");
@@ -44,7 +37,7 @@ void put_locus(io::Group& group, const std::vector<MapPoint>& locus, const std::
             "in clearances");
   table.put("y", column(locus, [](const P& p) { return -p.at.eccentricity * std::cos(p.at.attitude); }), "1",
             "in clearances");
-  table.put("min_thickness", column(locus, [](const P& p) { return p.thickness; }), "m", "least thickness of the film");
+  table.put("min_thickness", column(locus, &P::thickness), "m", "least thickness of the film");
   table.put("speed_limit", column(locus, [](const P& p) { return p.at.speed_limit; }), "1",
             "Omega* = Omega sqrt(m c/load) of a rigid rotor at the border of stability; NaN: stable at every speed");
   table.put("whirl_ratio", column(locus, [](const P& p) { return p.at.whirl_ratio; }), "1",

@@ -11,6 +11,7 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/gas_point.hpp"
 #include "study/bearing/held_film.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/lost_points.hpp"
 #include "whirl/core/agree.hpp"
@@ -81,23 +82,17 @@ void put_gas_summary(io::StudySummary& summary, const std::vector<GasRow>& point
 // Why rows have no film, if any has none.
 void put_reasons(io::Group& table, const io::Shape& shape, const std::vector<GasRow>& rows) {
   if (std::ranges::all_of(rows, &GasRow::found)) return;
-  table.put("reason", io::Dataset{shape, reasons_of(rows), "", "why there is no film; empty: there is one"});
+  table.put("reason",
+            io::Dataset{shape, column(rows, &GasRow::reason), "", "why there is no film; empty: there is one"});
 }
 
 void put_gas_table(io::Group& table, const io::Shape& shape, const std::vector<GasRow>& rows) {
   for (std::size_t k = 0; k < gas_quantities().size(); ++k) {
     const GasQuantity& q = gas_quantities()[k];
-    std::vector<double> column;
-    for (const GasRow& p : rows) column.push_back(p.values[k]);
-    table.put(q.name, shape, column, q.unit, std::string(q.text) + (shape.size() > 1 ? " [speed][eccentricity]" : ""));
+    table.put(q.name, shape, column(rows, [k](const GasRow& r) { return r.values[k]; }), q.unit,
+              std::string(q.text) + (shape.size() > 1 ? " [speed][eccentricity]" : ""));
   }
   put_reasons(table, shape, rows);
-}
-
-std::vector<double> values_of(const std::vector<deck::Quantity>& list) {
-  std::vector<double> out;
-  for (const deck::Quantity& q : list) out.push_back(q.value);
-  return out;
 }
 
 // Of the last eccentricity, speed by speed; not numbers at a speed without a film there.
@@ -181,17 +176,17 @@ std::vector<GasRow> put_gas_map(io::Group& group, const GasJob& job, const syste
     }
   auto& table = group.child("map");
   const io::Shape shape{map.clearances.size(), map.diameters.size()};
-  table.put("clearance", values_of(map.clearances), "m", "of the bearing");
-  table.put("diameter", values_of(map.diameters), "m", "of all orifices");
+  table.put("clearance", column(map.clearances, &deck::Quantity::value), "m", "of the bearing");
+  table.put("diameter", column(map.diameters, &deck::Quantity::value), "m", "of all orifices");
   for (const char* name : {"load", "mass_flow", "power_loss"}) {
     const auto all = gas_quantities();
     const auto q = std::ranges::find(all, std::string_view(name), &GasQuantity::name);
-    std::vector<double> column;
-    for (const GasRow& row : rows) column.push_back(row.values[static_cast<std::size_t>(q - all.begin())]);
-    table.put(name, shape, std::move(column), q->unit, "at the eccentricity of the map [clearance][diameter]");
+    const auto k = static_cast<std::size_t>(q - all.begin());
+    table.put(name, shape, column(rows, [k](const GasRow& r) { return r.values[k]; }), q->unit,
+              "at the eccentricity of the map [clearance][diameter]");
   }
   put_reasons(table, shape, rows);
-  table.label_each({io::labels_of(values_of(map.diameters))});
+  table.label_each({io::labels_of(column(map.diameters, &deck::Quantity::value))});
   table.set("eccentricity", map.eccentricity);
   return rows;
 }
@@ -269,27 +264,23 @@ StudyResult GasBearing::run(Context& context) {
   group.set("bearing", context.machine.bearings[which].name);
   group.set("clearance", support.geometry.clearance);
   auto& table = group.child("curves");
-  table.put("speed", values_of(options.speeds), "rad/s", "of the shaft");
+  table.put("speed", column(options.speeds, &deck::Quantity::value), "rad/s", "of the shaft");
   table.put("eccentricity", options.eccentricities, "1", "of the journal, in clearances");
   put_gas_table(table, {options.speeds.size(), options.eccentricities.size()}, curves);
   const auto found = [](const std::vector<GasRow>& rows) { return std::ranges::count_if(rows, &GasRow::found); };
   if (found(equilibria) > 0) {
     auto& at = group.child("equilibria");
-    at.put("speed", values_of(options.speeds), "rad/s", "of the shaft");
-    std::vector<double> x, y;
-    for (const GasRow& p : equilibria) {
-      x.push_back(p.place[0]);
-      y.push_back(p.place[1]);
-    }
-    at.put("x", x, "m", "of the journal, from the centre of the bearing");
-    at.put("y", y, "m", "of the journal, from the centre of the bearing");
+    at.put("speed", column(options.speeds, &deck::Quantity::value), "rad/s", "of the shaft");
+    for (const std::size_t d : {0U, 1U})
+      at.put(d == 0 ? "x" : "y", column(equilibria, [d](const GasRow& r) { return r.place[d]; }), "m",
+             "of the journal, from the centre of the bearing");
     put_gas_table(at, {equilibria.size()}, equilibria);
   }
   put_gas_fields(group, options, curves);
   put_knudsen(group, *film::find<film::Gas>(support.film), support.lubricant.viscosity);
   summary.points = static_cast<long>(found(curves) + found(equilibria));
   const auto warn = [&](const std::vector<GasRow>& rows, const std::function<std::string(std::size_t)>& words) {
-    for (std::string& line : lost_points("no film at", reasons_of(rows), words))
+    for (std::string& line : lost_points("no film at", column(rows, &GasRow::reason), words))
       summary.warnings.push_back(std::move(line));
   };
   warn(curves, [&](std::size_t k) {

@@ -106,10 +106,4 @@ GasRow gas_row(MPI_Comm comm, Pieces& pieces, const std::string& name, double sp
   return row;
 }
 
-std::vector<std::string> reasons_of(const std::vector<GasRow>& rows) {
-  std::vector<std::string> out;
-  for (const GasRow& row : rows) out.push_back(row.reason);
-  return out;
-}
-
 }  // namespace whirl::study

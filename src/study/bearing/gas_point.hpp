@@ -59,7 +59,4 @@ void members(auto& archive, film::NodalField& f) {
 [[nodiscard]] GasRow gas_row(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed, bool fields,
                              const std::function<GasPoint()>& compute);
 
-/// Why each has no film; empty: it has one.
-[[nodiscard]] std::vector<std::string> reasons_of(const std::vector<GasRow>& rows);
-
 }  // namespace whirl::study

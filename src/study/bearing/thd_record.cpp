@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/columns.hpp"
 #include "study/findings.hpp"
 #include "whirl/thermal/cylinder.hpp"
 
@@ -85,16 +86,12 @@ void put_orifices(io::Group& results, ThdAtSpeed& film) {
   const std::vector<thermal::Orifice>& orifices = film.orifices();
   if (orifices.empty()) return;
   const thermal::Mesh& mesh = film.rows().mesh();
-  std::vector<double> theta, z, diameter;
-  for (const thermal::Orifice& o : orifices) {
-    theta.push_back(mesh.theta(o.i));
-    z.push_back(mesh.z(o.j));
-    diameter.push_back(o.diameter);
-  }
   io::Group& group = results.child("orifices");
-  group.put("theta", std::move(theta), "rad", "of the node of each orifice, from +x");
-  group.put("z", std::move(z), "m", "of the node of each orifice, from the mid-plane of the bearing");
-  group.put("diameter", std::move(diameter), "m", "of each orifice");
+  group.put("theta", column(orifices, [&](const thermal::Orifice& o) { return mesh.theta(o.i); }), "rad",
+            "of the node of each orifice, from +x");
+  group.put("z", column(orifices, [&](const thermal::Orifice& o) { return mesh.z(o.j); }), "m",
+            "of the node of each orifice, from the mid-plane of the bearing");
+  group.put("diameter", column(orifices, &thermal::Orifice::diameter), "m", "of each orifice");
   group.put("mass_flow", film.thd().flow().orifice_flows(), "kg/s", "into the film");
 }
 

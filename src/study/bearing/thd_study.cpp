@@ -11,6 +11,7 @@
 #include "study/bearing/thd_load.hpp"
 #include "study/bearing/thd_record.hpp"
 #include "study/bearing/thd_values.hpp"
+#include "study/columns.hpp"
 #include "study/findings.hpp"
 #include "study/packed.hpp"
 #include "study/pieces.hpp"
@@ -208,9 +209,8 @@ StudyResult ThdStudy::run(Context& context) {
   }
   auto& table = group.child("budget");
   for (std::size_t c = 0; c < thd_columns().size(); ++c) {
-    std::vector<double> column;
-    for (const auto& row : sweep.rows) column.push_back(row[c]);
-    table.put(thd_columns()[c].name, column, thd_columns()[c].unit, thd_columns()[c].description);
+    table.put(thd_columns()[c].name, column(sweep.rows, [c](const auto& row) { return row[c]; }), thd_columns()[c].unit,
+              thd_columns()[c].description);
   }
   if (std::ranges::any_of(sweep.reasons, [](const std::string& why) { return !why.empty(); }))
     table.put("reason", sweep.reasons, "why there is no film at the speed; empty: there is one");

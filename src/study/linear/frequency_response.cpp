@@ -14,6 +14,7 @@
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/branch_state.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
@@ -301,9 +302,7 @@ StudyResult FrequencyResponse::run(Context& context) {
   auto& response = group.child("response");
   response.put("frequency", frequencies, "rad/s", "of force and motion");
   if (!bars.at.empty()) {
-    std::vector<double> at;
-    for (const std::size_t k : bars.at) at.push_back(frequencies[k]);
-    group.child("bars").put("frequency", at, "rad/s",
+    group.child("bars").put("frequency", column(bars.at, [&](std::size_t k) { return frequencies[k]; }), "rad/s",
                             "at which errors are estimated: a few, and where each is largest");
   }
   for (std::size_t w = 0; w < ways.size(); ++w) {
@@ -324,23 +323,21 @@ StudyResult FrequencyResponse::run(Context& context) {
                         of = unit_of(outputs[o], options.inputs[i]);
       names.push_back({name, of});
       for (std::size_t w = 0; w < ways.size(); ++w) {
-        std::vector<double> column[4];
-        for (const auto& matrix : all[w]) {
-          const Complex g = matrix[o * inputs + i];
-          for (const auto& [k, value] : {std::pair{0, g.real()}, {1, g.imag()}, {2, std::abs(g)}, {3, std::arg(g)}})
-            column[k].push_back(value);
-        }
+        const auto of_each = [&](double (*part)(const Complex&)) {
+          return column(all[w], [&](const auto& matrix) { return part(matrix[o * inputs + i]); });
+        };
+        const std::vector<double> amplitude = of_each(std::abs);
         auto& table = response.child(ways[w].name).child(name);
-        table.put("real", column[0], of, "of the output over the input, for exp(+i w t)");
-        table.put("imaginary", column[1], of, "likewise");
-        table.put("amplitude", column[2], of, "0-peak over 0-peak");
-        table.put("phase", column[3], "rad", "of the output ahead of the input");
+        table.put("real", of_each(std::real), of, "of the output over the input, for exp(+i w t)");
+        table.put("imaginary", of_each(std::imag), of, "likewise");
+        table.put("amplitude", amplitude, of, "0-peak over 0-peak");
+        table.put("phase", of_each(std::arg), "rad", "of the output ahead of the input");
         if (w > 0) continue;
         const std::size_t e = o * inputs + i, most = largest_of(all[0], e);
         if (!put_endless(summary, names.back(), e, endless, bars.undamped, unit)) {
           std::map<std::string, double> bar;
           if (!bars.at.empty()) bar["uncertainty"] = bars.of(e, most);
-          summary.set(name + ".largest", column[2][most], of, bar);
+          summary.set(name + ".largest", amplitude[most], of, bar);
           summary.set(name + ".largest_at", in_unit(frequencies[most]), unit);
         }
         if (!answers(most, e)) silent.push_back(name);
@@ -348,8 +345,8 @@ StudyResult FrequencyResponse::run(Context& context) {
         std::optional<double> worst;
         for (std::size_t k = 0; k < bars.at.size(); ++k) {
           if (!answers(bars.at[k], e)) continue;
-          const double part = bars.error[e][k] / column[2][bars.at[k]];
-          most_by_shaft = std::max(most_by_shaft, bars.shaft[e][k] / column[2][bars.at[k]]);
+          const double part = bars.error[e][k] / amplitude[bars.at[k]];
+          most_by_shaft = std::max(most_by_shaft, bars.shaft[e][k] / amplitude[bars.at[k]]);
           if (!worst || !(part <= *worst)) worst = part;  // unknown stays unknown
           if (std::isnan(*worst)) break;
         }

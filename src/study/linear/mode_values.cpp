@@ -10,6 +10,7 @@
 #include "study/bars/error_bar.hpp"
 #include "study/bars/unresolved.hpp"
 #include "study/bars/verdict.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/linear/linear_brief.hpp"
@@ -171,9 +172,7 @@ void ModeValues::put_stability(io::StudySummary& summary, const std::vector<Stat
 
 void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<Station>& stations,
                             const std::vector<UnstableRange>& all, const std::vector<double>& errors) const {
-  std::vector<double> from, to, frequency, real;
-  std::vector<std::int64_t> mode, begins, ends;
-  std::vector<std::string> whirl, words;
+  std::vector<std::string> words;
   const auto error_of = [&](const std::optional<std::size_t>& crossing) {
     return crossing ? bars_.as_bar(deck::from_si(errors[*crossing], unit_)) : std::map<std::string, double>{};
   };
@@ -182,14 +181,6 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
   for (const UnstableRange& r : all) {
     if (!surely_grows(r.fastest, r.fastest_at, bars_)) continue;
     ranges.push_back(r);
-    from.push_back(r.from);
-    to.push_back(r.to);
-    frequency.push_back(r.lambda.imag());
-    real.push_back(r.lambda.real());
-    mode.push_back(r.id);
-    begins.push_back(r.begins);
-    ends.push_back(r.ends);
-    whirl.emplace_back(spectral::vibrates(r.lambda) ? spectral::name_of(tables_.sense_of(r.fastest)) : "none");
     // With as many digits as the bar of the border has.
     const auto place_of = [&](double speed, const std::optional<std::size_t>& crossing) {
       const auto bar = error_of(crossing);
@@ -216,14 +207,21 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
   summary.set("unstable.count", static_cast<double>(ranges.size()), "1");
   put_stability(summary, stations, ranges, errors);
   auto& table = group.child("unstable");
-  table.put("from", from, "rad/s", "speed from which the mode grows");
-  table.put("to", to, "rad/s", "speed up to which it grows");
-  table.put("mode", mode, "mode followed by its shape");
-  table.put("whirl", whirl, fmt::format("{}; none: it diverges", whirl_text));
-  table.put("frequency", frequency, "rad/s", "where it begins or ends to grow, else where it grows fastest");
-  table.put("damping_real", real, "1/s", "likewise");
-  table.put("begins", begins, "1: it becomes unstable at `from`; 0: the mode or the range of speeds begins there");
-  table.put("ends", ends, "1: it becomes stable at `to`; 0: the mode or the range of speeds ends there");
+  using R = UnstableRange;
+  const auto whirl = [&](const R& r) {
+    return spectral::vibrates(r.lambda) ? spectral::name_of(tables_.sense_of(r.fastest)) : "none";
+  };
+  table.put("from", column(ranges, &R::from), "rad/s", "speed from which the mode grows");
+  table.put("to", column(ranges, &R::to), "rad/s", "speed up to which it grows");
+  table.put("mode", column(ranges, &R::id), "mode followed by its shape");
+  table.put("whirl", column(ranges, whirl), fmt::format("{}; none: it diverges", whirl_text));
+  table.put("frequency", column(ranges, [](const R& r) { return r.lambda.imag(); }), "rad/s",
+            "where it begins or ends to grow, else where it grows fastest");
+  table.put("damping_real", column(ranges, [](const R& r) { return r.lambda.real(); }), "1/s", "likewise");
+  table.put("begins", column(ranges, &R::begins),
+            "1: it becomes unstable at `from`; 0: the mode or the range of speeds begins there");
+  table.put("ends", column(ranges, &R::ends),
+            "1: it becomes stable at `to`; 0: the mode or the range of speeds ends there");
   if (!ranges.empty()) warn_first(summary, "the machine is unstable: " + joined(words));
 }
 

@@ -12,6 +12,7 @@
 
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/verdict.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/linear/mode_bars.hpp"
@@ -39,28 +40,27 @@ constexpr int beyond_over_speeds = 8, beyond_over_meshes = 2, beyond_to_find = 6
 // The regions of searches by transfer functions, over speed; of one speed in the summary too.
 void put_searches(io::Group& group, io::StudySummary& summary, const std::vector<double>& speeds,
                   const std::map<double, ModeSearch>& searches) {
-  std::vector<double> at, frequency, decay, counted, missed;
+  std::vector<double> at;
+  std::vector<ModeSearch> known;
   for (const double speed : speeds) {
     const auto found = searches.find(speed);
     if (found == searches.end() || found->second.frequency == 0) continue;
     at.push_back(speed);
-    frequency.push_back(found->second.frequency);
-    decay.push_back(found->second.decay);
-    counted.push_back(found->second.counted);
-    missed.push_back(found->second.missed);
+    known.push_back(found->second);
   }
   if (at.empty()) return;
   auto& search = group.child("search");
   search.put("speed", at, "rad/s", "shaft speed");
-  search.put("frequency", frequency, "rad/s", "up to which the region of the search reaches, and to the right as far");
-  search.put("decay", decay, "1/s", "as far as it reaches to the left");
-  search.put("counted", counted, "1", "eigenvalues in the region, both of each pair");
-  search.put("missed", missed, "1", "of these not found; -1: the count is not sure");
+  search.put("frequency", column(known, &ModeSearch::frequency), "rad/s",
+             "up to which the region of the search reaches, and to the right as far");
+  search.put("decay", column(known, &ModeSearch::decay), "1/s", "as far as it reaches to the left");
+  search.put("counted", column(known, &ModeSearch::counted), "1", "eigenvalues in the region, both of each pair");
+  search.put("missed", column(known, &ModeSearch::missed), "1", "of these not found; -1: the count is not sure");
   if (at.size() > 1) return;
-  summary.set("search.frequency", frequency[0], "rad/s");
-  summary.set("search.decay", decay[0], "1/s");
-  summary.set("search.counted", counted[0], "1");
-  summary.set("search.missed", missed[0], "1");
+  summary.set("search.frequency", known[0].frequency, "rad/s");
+  summary.set("search.decay", known[0].decay, "1/s");
+  summary.set("search.counted", known[0].counted, "1");
+  summary.set("search.missed", known[0].missed, "1");
 }
 
 // What is true at the speed of service is computed there, with its bars, and not read off between two speeds.

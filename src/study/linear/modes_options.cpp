@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "study/columns.hpp"
 #include "study/cost.hpp"
 
 namespace whirl::study {
@@ -85,18 +86,14 @@ void describe(deck::Description<ModesOptions>& d) {
 }
 
 std::vector<double> ModesOptions::all_speeds() const {
-  std::vector<double> s;
-  for (const deck::Quantity& q : speeds) s.push_back(q.value);
+  std::vector<double> s = column(speeds, &deck::Quantity::value);
   if (range)
     for (int i = 0; i < points; ++i) s.push_back(range->from + (range->to - range->from) * i / (points - 1));
   return s;
 }
 
 std::vector<double> ModesOptions::all_shape_speeds() const {
-  std::vector<double> s;
-  for (const deck::Quantity& q : shapes_at) s.push_back(q.value);
-  if (s.empty()) s.push_back(all_speeds().back());
-  return s;
+  return shapes_at.empty() ? std::vector{all_speeds().back()} : column(shapes_at, &deck::Quantity::value);
 }
 
 std::string ModesOptions::unit() const {
