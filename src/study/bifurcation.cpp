@@ -38,20 +38,9 @@ Event event_of(solve::Event e) {
 }
 
 io::BifurcationType type_of(solve::Event event) {
-  switch (event) {
-    case solve::Event::fold:
-      return io::BifurcationType::fold;
-    case solve::Event::hopf:
-      return io::BifurcationType::hopf;
-    case solve::Event::cyclic_fold:
-      return io::BifurcationType::cyclic_fold;
-    case solve::Event::flip:
-      return io::BifurcationType::flip;
-    case solve::Event::neimark_sacker:
-      return io::BifurcationType::neimark_sacker;
-    default:
-      return io::BifurcationType::branch_point;
-  }
+  static_assert(static_cast<int>(solve::Event::neimark_sacker) ==
+                static_cast<int>(io::BifurcationType::neimark_sacker));  // both in one order
+  return static_cast<io::BifurcationType>(event);
 }
 
 bool wanted(solve::Event event, const std::vector<Event>& detect) {

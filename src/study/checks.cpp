@@ -51,6 +51,14 @@ void check_nodes(const std::string& key, const std::vector<int>& nodes, const sy
                   fmt::format("node {} does not exist: the shaft has nodes 1 to {}", nodes[i], n_nodes));
 }
 
+void check_carried_at_rest(const std::string& key, const system::Machine& machine, const deck::Report& report) {
+  for (const system::Bearing& b : machine.bearings)
+    if (!film::facts(b.film).coefficients)
+      return report.fail(key, fmt::format("the film of bearing {} carries no load at rest: speeds must be positive "
+                                          "(linear films have coefficients at rest, too)",
+                                          b.name));
+}
+
 void check_held(const system::Machine& machine, const deck::Report& report) {
   if (const auto loose = rotor::loose_part(machine.rotor, system::support_nodes(machine)))
     report.fail("", rotor::words(*loose, machine.rotor, "at its bearings alone"));

@@ -20,10 +20,10 @@ namespace whirl::study {
 
 using core::check;
 
-std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, const std::vector<double>& x,
-                                                double omega) {
+std::vector<film::PortCoefficients> film_coefficients(system::RotorSystem& system, const std::vector<double>& x,
+                                                      double omega) {
   const std::vector<film::Response> films = system.film_responses(x.data(), film::Need::tangents);
-  std::vector<FilmCoefficients> out(films.size());
+  std::vector<film::PortCoefficients> out(films.size());
   for (std::size_t b = 0; b < films.size(); ++b) {
     out[b].ports = static_cast<std::size_t>(system.ports(static_cast<int>(b)));
     for (std::size_t d = 0; d < out[b].ports; ++d)

@@ -2,7 +2,6 @@
 // What the studies share.
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -16,17 +15,10 @@
 
 namespace whirl::study {
 
-/// Stiffness and damping of a film, [i][j] of force i by motion j of its journal: x, y [N/m, N s/m], and of a film that
-/// tilts dx/dz, dy/dz with the moments that do work with them [N, N m].
-struct FilmCoefficients {
-  std::size_t ports = 2;
-  std::array<std::array<double, 4>, 4> stiffness{}, damping{};
-};
-
-/// Those of every film about the equilibrium x [size()] at the frequency `omega` [rad/s]: its tangents, or with own
-/// states minus its transfer function from the motion of the journal to the force. Collective.
-[[nodiscard]] std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, const std::vector<double>& x,
-                                                              double omega);
+/// Stiffness and damping of every film about the equilibrium x [size()] at the frequency `omega` [rad/s]: its tangents,
+/// or with own states minus its transfer function from the motion of the journal to the force. Collective.
+[[nodiscard]] std::vector<film::PortCoefficients> film_coefficients(system::RotorSystem& system,
+                                                                    const std::vector<double>& x, double omega);
 
 /// The equilibrium without forcing from the guess x, which it replaces: by whole steps where a line search ends without
 /// it, which a film that starts without its pressure needs. Collective.

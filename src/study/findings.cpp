@@ -95,6 +95,14 @@ void Findings::save_checkpoint(const io::Group& state) const {
   checkpoint_written();
 }
 
+void Findings::save_each_second(const std::function<io::Group()>& state) {
+  if (!agreed(saves_at_once() || seconds() - last_saved_ >= 1)) return;
+  io::Group all = state();
+  all.set("seconds", seconds());
+  save_checkpoint(all);
+  last_saved_ = seconds();
+}
+
 bool Findings::has_checkpoint() const {
   int there = rank_ == 0 && io::Checkpoint(checkpoint_).exists();
   MPI_Bcast(&there, 1, MPI_INT, 0, comm_);

@@ -58,6 +58,8 @@ public:
   /// Rank 0's word, for all: what a clock decides must be decided alike. Collective.
   [[nodiscard]] bool agreed(bool word) const;
 
+  /// Saves what `state` makes, with the time taken so far, unless that was done within the last second. Collective.
+  void save_each_second(const std::function<io::Group()>& state);
   /// Saved by rank 0, and by all ranks where they share datasets; loaded on all ranks, which then have as many rows of
   /// these as each other. Collective.
   void save_checkpoint(const io::Group& state) const;
@@ -83,7 +85,7 @@ private:
   Say say_;
   StudyResult result_;
   std::chrono::steady_clock::time_point started_, last_line_;
-  double earlier_seconds_ = 0;
+  double earlier_seconds_ = 0, last_saved_ = -1e9;
   std::deque<std::array<double, 2>> pace_;  // seconds and what was done by then, of the last half minute
 };
 

@@ -187,6 +187,8 @@ void check_unbalance(const std::vector<std::string>& names, const system::Machin
 /// Nodes must exist in the shaft.
 void check_nodes(const std::string& key, const std::vector<int>& nodes, const system::Machine& machine,
                  const deck::Report& report);
+/// No film carries a load at rest, but linear ones, which have coefficients there: `key` asks for the speed zero.
+void check_carried_at_rest(const std::string& key, const system::Machine& machine, const deck::Report& report);
 /// Springs or rigid supports at the nodes of the bearings must hold every part of a shaft with hinges.
 void check_held(const system::Machine& machine, const deck::Report& report);
 

@@ -81,13 +81,8 @@ void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& op
     summary.set(head + "force.x", a.place.force[0], "N");
     summary.set(head + "force.y", a.place.force[1], "N");
     for (std::size_t f = 0; f < options.frequencies.size(); ++f) {
-      const film::PortCoefficients& c = a.coefficients[f];
       const std::string at_ratio = fmt::format("{}ratio.{:.6g}.", head, options.frequencies[f]);
-      for (std::size_t i = 0; i < c.ports; ++i)
-        for (std::size_t j = 0; j < c.ports; ++j) {
-          summary.set(at_ratio + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
-          summary.set(at_ratio + "C." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
-        }
+      put_matrices(summary, at_ratio, a.coefficients[f]);
       if (!a.enforced.empty()) put_enforced(summary, at_ratio, options.amplitudes, a.enforced[f]);
     }
   }

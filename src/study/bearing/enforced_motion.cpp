@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "study/bars/summary_bars.hpp"
 #include "whirl/film/use/enforced.hpp"
 
 namespace whirl::study {
@@ -73,17 +74,21 @@ std::vector<EnforcedAt> enforced_at(film::Film& film, const film::Geometry& bore
       const bool slope = ports[port] >= film::Port::tilt_x;
       const double size = amplitude * bore.clearance / (slope ? 2 * bore.length : 1.0);
       fill(now, port, none);
-      try {
-        fill(now, port, enforced.along(port, size));
-      } catch (const core::DomainError& error) {
-        now.lost[port] = error.what();
-      } catch (const core::NotConverged& error) {
-        now.lost[port] = error.what();
-      }
+      (void)has_answer([&] { fill(now, port, enforced.along(port, size)); }, &now.lost[port]);
     }
     now.apart = difference(now.coefficients, perturbation);
   }
   return out;
+}
+
+void put_matrices(io::StudySummary& summary, const std::string& head, const film::PortCoefficients& c,
+                  const std::function<bool(std::size_t)>& skip) {
+  for (std::size_t i = 0; i < c.ports; ++i)
+    for (std::size_t j = 0; j < c.ports; ++j) {
+      if (skip && skip(j)) continue;
+      summary.set(head + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
+      summary.set(head + "C." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
+    }
 }
 
 void put_enforced(io::StudySummary& summary, const std::string& head, std::span<const double> amplitudes,
@@ -91,12 +96,7 @@ void put_enforced(io::StudySummary& summary, const std::string& head, std::span<
   for (std::size_t a = 0; a < found.size(); ++a) {
     const std::string at = fmt::format("{}amplitude.{:.6g}.", head, amplitudes[a]);
     const film::PortCoefficients& c = found[a].coefficients;
-    for (std::size_t i = 0; i < c.ports; ++i)
-      for (std::size_t j = 0; j < c.ports; ++j) {
-        if (!found[a].lost[j].empty()) continue;
-        summary.set(at + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
-        summary.set(at + "C." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
-      }
+    put_matrices(summary, at, c, [&](std::size_t port) { return !found[a].lost[port].empty(); });
     for (std::size_t j = 0; j < c.ports; ++j) {
       if (!found[a].lost[j].empty()) continue;
       summary.set(at + "distortion." + port_words[j], found[a].distortion[j], "1");

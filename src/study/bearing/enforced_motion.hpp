@@ -2,6 +2,7 @@
 // Stiffness and damping of one film by enforced harmonic motions of its journal, amplitude by amplitude.
 
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,5 +64,8 @@ inline constexpr std::array<const char*, 4> port_words = {"x", "y", "slope_x", "
 /// By the number of slopes in a pair.
 inline constexpr std::array<const char*, 3> stiffness_units = {"N/m", "N", "N m"},
                                             damping_units = {"N s/m", "N s", "N m s"};
+/// K.xx, C.xx, ... under `head`, but for motions along ports that `skip` says.
+void put_matrices(io::StudySummary& summary, const std::string& head, const film::PortCoefficients& c,
+                  const std::function<bool(std::size_t port)>& skip = {});
 
 }  // namespace whirl::study

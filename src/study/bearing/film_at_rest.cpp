@@ -117,12 +117,7 @@ bool FilmAtRest::try_to_carry(const Pair& load) {
     const Pair from = place();
     bool closer = false;
     for (int k = 0; k < most_halvings && !closer; ++k, move *= 0.5) {
-      try {
-        hold({from[0] + move(0), from[1] + move(1)});
-        closer = left().norm() < before.norm();
-      } catch (const core::DomainError&) {
-      } catch (const core::NotConverged&) {
-      }
+      closer = has_answer([&] { hold({from[0] + move(0), from[1] + move(1)}); }) && left().norm() < before.norm();
     }
     if (closer) continue;
     hold(from);
@@ -135,13 +130,13 @@ void FilmAtRest::carry(const Pair& load) {
   const double size = std::hypot(load[0], load[1]);
   // From the last place, or else from ones on the way of the load: at the centre some films have no stiffness.
   for (const double part : {0.0, 0.1, 0.4, 0.7}) {
-    try {
+    bool carried = false;
+    (void)has_answer([&] {
       if (part > 0 || !(answer_.force[0] != 0 || answer_.force[1] != 0))
         hold({part * clearance_ * load[0] / size, part * clearance_ * load[1] / size});
-      if (try_to_carry(load)) return;
-    } catch (const core::DomainError&) {
-    } catch (const core::NotConverged&) {
-    }
+      carried = try_to_carry(load);
+    });
+    if (carried) return;
   }
   const Capacity most = capacity(load);
   throw NoPlace(fmt::format("no equilibrium: no place of the journal was found where the film carries {:.6g} N at "

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "study/bars/summary_bars.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -15,18 +16,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Angle of the force from the vertical [rad] below which it counts as vertical; a relaxed film is less exact than a
 // closed form.
 constexpr double vertical = 1e-13, vertical_relaxed = 1e-11;
-
-// What `find` returns; nothing where no film can be evaluated.
-template <class Find>
-std::optional<BearingEquilibrium> if_there_is_a_film(Find&& find) {
-  try {
-    return find();
-  } catch (const core::DomainError&) {
-    return std::nullopt;
-  } catch (const core::NotConverged&) {
-    return std::nullopt;
-  }
-}
 
 }  // namespace
 
@@ -71,7 +60,7 @@ std::optional<BearingEquilibrium> OneBearing::carrying(double eccentricity, cons
     e.sommerfeld = f[1];
     return std::atan2(f[0], f[1]);
   };
-  return if_there_is_a_film([&]() -> std::optional<BearingEquilibrium> {
+  return answer_of([&]() -> std::optional<BearingEquilibrium> {
     double before = near.attitude, d = 0, angle = before;
     bool found = false;
     double d_before = miss(before);
@@ -96,7 +85,7 @@ std::optional<BearingEquilibrium> OneBearing::carrying(double eccentricity, cons
 }
 
 std::optional<BearingEquilibrium> OneBearing::carrying(const JournalLocus::Node& node) {
-  return if_there_is_a_film([&] {
+  return answer_of([&] {
     BearingEquilibrium e;
     states_ = node.states;
     motion_.position = {node.place[0] * clearance_, node.place[1] * clearance_, 0, 0};

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "study/bars/summary_bars.hpp"
 #include "study/bearing/thd_record.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/thermal/lumped.hpp"
@@ -132,19 +133,20 @@ void put_lumped(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& o
   for (const thermal::SupplyGroove& groove : options.grooves) start = std::min(start, groove.temperature);
   for (const thermal::LumpedWall& w : walls)
     if (w.area > 0) start = std::min(start, w.temperature);
-  try {
-    const double temperature = thermal::lumped_temperature(film.fluid(), geometry.clearance, walls, told, start);
-    (void)told(temperature);
-    summary.set("temperature.lumped", temperature, "K");
-    summary.set("load.lumped.x", -at.report.force[0], "N");
-    summary.set("load.lumped.y", -at.report.force[1], "N");
-    summary.set("power_loss.lumped", at.report.power, "W");
-    summary.set("mass_flow.lumped", at.drawn, "kg/s");
-  } catch (const core::DomainError& error) {
-    summary.warnings.push_back(error.what());
-  } catch (const core::NotConverged& error) {
-    summary.warnings.push_back(error.what());
-  }
+  std::string reason;
+  if (!has_answer(
+          [&] {
+            const double temperature =
+                thermal::lumped_temperature(film.fluid(), geometry.clearance, walls, told, start);
+            (void)told(temperature);
+            summary.set("temperature.lumped", temperature, "K");
+            summary.set("load.lumped.x", -at.report.force[0], "N");
+            summary.set("load.lumped.y", -at.report.force[1], "N");
+            summary.set("power_loss.lumped", at.report.power, "W");
+            summary.set("mass_flow.lumped", at.drawn, "kg/s");
+          },
+          &reason))
+    summary.warnings.push_back(reason);
 }
 
 }  // namespace whirl::study

@@ -30,16 +30,14 @@ double CycleFollower::normal_form(solve::PeriodicProblem& problem, system::Plant
   if (autonomous() || (event != solve::Event::neimark_sacker && event != solve::Event::flip)) return io::no_value;
   core::Vector row = core::duplicate(u);
   solve::parameter_row(problem, row.get());
-  try {
+  double out = io::no_value;
+  (void)has_answer([&] {
     problem.linearise(u, row.get());
     const solve::MotionSize size = motion_of_places(system);
-    return event == solve::Event::flip ? solve::flip_coefficient(problem, u, step, size)
-                                       : solve::neimark_sacker_coefficient(problem, u, critical, step, size);
-  } catch (const core::NotConverged&) {
-    return io::no_value;
-  } catch (const core::DomainError&) {
-    return io::no_value;
-  }
+    out = event == solve::Event::flip ? solve::flip_coefficient(problem, u, step, size)
+                                      : solve::neimark_sacker_coefficient(problem, u, critical, step, size);
+  });
+  return out;
 }
 
 std::vector<double> CycleFollower::kept_numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,

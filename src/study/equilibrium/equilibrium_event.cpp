@@ -24,13 +24,10 @@ enum Number : std::size_t { place, frequency, coefficient, numbers };
 constexpr int few_harmonics = 3, more_harmonics = 5;  // of the cycles that decide on a criticality
 
 double lyapunov(system::Plant& system, Vec x, double omega, double step) {
-  try {
-    return solve::hopf_coefficient(system, x, omega, step * critical_motion(system, x, omega).largest);
-  } catch (const core::NotConverged&) {
-    return unknown;
-  } catch (const core::DomainError&) {
-    return unknown;
-  }
+  double out = unknown;
+  (void)has_answer(
+      [&] { out = solve::hopf_coefficient(system, x, omega, step * critical_motion(system, x, omega).largest); });
+  return out;
 }
 
 // Of the cycles born at the Hopf point with other cells, whose numbers are `there`; not a number if they cannot be had.

@@ -9,6 +9,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/bearing/enforced_motion.hpp"
 #include "study/bearing/film_at_rest.hpp"
 #include "study/brief.hpp"
 #include "study/common.hpp"
@@ -70,21 +71,6 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
   }
 }
 
-// K and C of the forces by the motions of the journal: xx, xy, yx, yy, and of a film that tilts the pairs with the
-// slopes and their moments, `slope_x` for dx/dz and the moment that does work with it.
-void put_coefficients(const FilmCoefficients& film, const std::string& head, io::StudySummary& summary) {
-  const char* const port[] = {"x", "y", "slope_x", "slope_y"};
-  const char* const unit[] = {"N/m", "N", "N m"};
-  const char* const rate[] = {"N s/m", "N s", "N m s"};
-  for (std::size_t d = 0; d < film.ports; ++d)
-    for (std::size_t e = 0; e < film.ports; ++e) {
-      const std::size_t slopes = (d > 1 ? 1U : 0U) + (e > 1 ? 1U : 0U);
-      const std::string pair = std::string(port[d]) + (slopes == 0 ? "" : ".") + port[e];
-      summary.set(head + "K." + pair, film.stiffness[d][e], unit[slopes]);
-      summary.set(head + "C." + pair, film.damping[d][e], rate[slopes]);
-    }
-}
-
 // What follows from the films at the state x.
 void put_values(const Context& context, system::RotorSystem& system, Vec at, io::StudySummary& summary) {
   const std::vector<double> x = system.gather(at);
@@ -93,7 +79,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
   const auto names = names_of_bearings(context.machine);
   const std::vector<double> thickness = system.observe(at).film_thickness;
   // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
-  const std::vector<FilmCoefficients> coefficients = film_coefficients(system, x, system.speed());
+  const std::vector<film::PortCoefficients> coefficients = film_coefficients(system, x, system.speed());
   const std::vector<film::FilmReport> reports = system.film_summaries(x.data());
   double total_loss = 0;
   const char* const axis[] = {"x", "y"};
@@ -134,7 +120,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
       summary.set(head + "power_loss", report.power_loss, "W");
       total_loss += report.power_loss;
     }
-    put_coefficients(coefficients[b], head, summary);
+    put_matrices(summary, head, coefficients[b]);
     for (std::size_t d = 0; d < 2 && coefficients[b].ports > 2; ++d) {
       summary.set(head + "moment." + axis[d], films[b].force[2 + d], "N m");
       summary.set(head + "tilt." + axis[d], journals[b].tilt[d], "1");

@@ -36,10 +36,7 @@ void ElementConvergence::validate(const system::Machine& machine, const deck::Re
     report.fail("",
                 "the shaft is reduced, whose errors would be counted as those of the elements: "
                 "set rotor.reduction.type to none");
-  for (const system::Bearing& b : machine.bearings)
-    if (options.speed.value <= 0 && !film::facts(b.film).coefficients)
-      return report.fail(
-          "speed", fmt::format("the film of bearing {} carries no load at rest: the speed must be positive", b.name));
+  if (options.speed.value <= 0) check_carried_at_rest("speed", machine, report);
 }
 
 double ElementConvergence::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {

@@ -38,7 +38,7 @@ void append(std::vector<double>& out, const std::vector<Complex>& matrix) {
 }
 
 // The machine with constant stiffness and damping in place of its films.
-system::Train with_coefficients(system::Train train, const std::vector<FilmCoefficients>& films) {
+system::Train with_coefficients(system::Train train, const std::vector<film::PortCoefficients>& films) {
   for (std::size_t b = 0; b < films.size(); ++b) {
     film::Linear film;
     for (std::size_t i = 0; i < 2; ++i)
@@ -84,7 +84,7 @@ public:
     if (way.films == Way::Films::whole) return matrix_.at(omega);
     const double frequency = way.films == Way::Films::constant ? way.frequency : omega;
     if (frequency != last_ || way.films != last_films_) {
-      std::vector<FilmCoefficients> films = film_coefficients(system_, whole_, frequency);
+      std::vector<film::PortCoefficients> films = film_coefficients(system_, whole_, frequency);
       if (way.films == Way::Films::given) put_given(films, frequency);
       const system::Train train = with_coefficients(train_, films);
       if (linear_) {
@@ -109,7 +109,7 @@ public:
   }
 
 private:
-  void put_given(std::vector<FilmCoefficients>& films, double frequency) const {
+  void put_given(std::vector<film::PortCoefficients>& films, double frequency) const {
     for (std::size_t b = 0; b < films.size(); ++b)
       for (const GivenCoefficients& g : options_.given) {
         if (g.bearing != train_.supports[b].name) continue;

@@ -158,17 +158,13 @@ void FrequencyResponse::validate(const system::Machine& machine, const deck::Rep
                       "{:.6g} to {:.6g} rad/s",
                       g.table.front().frequency, g.table.back().frequency, options.range.from, options.range.to));
   }
-  for (const system::Bearing& b : machine.bearings) {
-    const film::Facts facts = film::facts(b.film);
-    if (options.speed.value <= 0 && !facts.coefficients)
-      return report.fail("speed", fmt::format("the film of bearing {} carries no load at rest: the speed must be "
-                                              "positive (linear films have coefficients at rest, too)",
-                                              b.name));
-    if (facts.tilts && (options.coefficients || !options.constant_at.empty() || !options.given.empty()))
+  if (options.speed.value <= 0) check_carried_at_rest("speed", machine, report);
+  if (!options.coefficients && options.constant_at.empty() && options.given.empty()) return;
+  for (const system::Bearing& b : machine.bearings)
+    if (film::facts(b.film).tilts)
       return report.fail(
           options.coefficients ? "coefficients" : "constant_at",
           fmt::format("the film of bearing {} tilts: a linear film has no moments to take its place", b.name));
-  }
 }
 
 double FrequencyResponse::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {

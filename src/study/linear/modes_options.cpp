@@ -125,13 +125,7 @@ void Modes::validate(const system::Machine& machine, const deck::Report& report)
   }
   bool at_rest = options.range && std::min(options.range->from, options.range->to) <= 0;
   for (const deck::Quantity& s : options.speeds) at_rest = at_rest || s.value <= 0;
-  if (!at_rest) return;
-  for (const system::Bearing& b : machine.bearings)
-    if (!film::facts(b.film).coefficients)
-      return report.fail(options.range ? "range" : "speeds",
-                         fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
-                                     "films have coefficients at rest, too)",
-                                     b.name));
+  if (at_rest) check_carried_at_rest(options.range ? "range" : "speeds", machine, report);
 }
 
 }  // namespace whirl::study

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "study/linear/response_peaks.hpp"
+#include "study/linear/synchronous.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/freedom.hpp"
 
@@ -128,20 +129,9 @@ Transfer TransferMatrix::at(double omega) {
   const std::size_t inputs = loads_.size();
   Transfer out{std::vector<Complex>(outputs_.size() * inputs), std::vector<double>(outputs_.size() * inputs)};
   for (std::size_t i = 0; i < inputs; ++i) {
-    const std::vector<Complex> amplitude = solver_.respond(loads_[i]);
-    std::vector<double> state[2], shaft[2];
-    for (std::size_t part = 0; part < 2; ++part) {
-      core::Vector v = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
-      {
-        const core::WriteArray a(v.get());
-        std::ranges::transform(amplitude, a.data(), [part](Complex z) { return part == 0 ? z.real() : z.imag(); });
-      }
-      state[part] = system_.gather(v.get());
-      // Not every solver tells of a singular matrix.
-      if (!std::ranges::all_of(state[part], [](double s) { return std::isfinite(s); }))
-        throw core::NotConverged(solve::singular_at_frequency);
-      shaft[part] = system_.shaft(state[part].data(), 0, false);
-    }
+    const HarmonicState state = harmonic_response(system_, solver_, loads_[i]);
+    std::vector<double> shaft[2];
+    for (std::size_t part = 0; part < 2; ++part) shaft[part] = system_.shaft(state[part].data(), 0, false);
     const auto coordinate = [&](PetscInt q) {
       const auto k = static_cast<std::size_t>(2 * q);
       return Complex(state[0][k], state[1][k]);

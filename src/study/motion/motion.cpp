@@ -21,7 +21,6 @@
 #include "study/motion/plane.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/study/stop.hpp"
 #include "whirl/transient/steps/integrator.hpp"
 
 namespace whirl::study {
@@ -160,23 +159,20 @@ private:
   }
 
   void save() {
-    if (!options_.checkpoint) return;
-    // At most once a second; rank 0 decides for all.
-    int due = saves_at_once() || context_.results.seconds() - last_saved_ >= 1;
-    MPI_Bcast(&due, 1, MPI_INT, 0, context_.comm);
-    if (!due) return;
+    if (options_.checkpoint) context_.results.save_each_second([this] { return state(); });
+  }
+
+  [[nodiscard]] io::Group state() const {
     io::Group state;
     state.set("done", done_ + 1);
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
-    state.set("seconds", context_.results.seconds());
     put_vector(state, "u", integrator_.scaled(), layout_.shared, "scaled state");
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       put_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k), layout_.shared, "deviation");
     record_.save(state.child("record"), layout_.shared);
     if (watch_.seen()) watch_.save(state.child("watch"));
-    context_.results.save_checkpoint(state);
-    last_saved_ = context_.results.seconds();
+    return state;
   }
 
   void restore(const io::Group& state) {
@@ -256,7 +252,6 @@ private:
   FilmLimit films_;
   double margin_ = 0;  // of the films at the last sample
   int done_ = 0;
-  double last_saved_ = -1e9;
 };
 
 // "The motion is periodic and repeats after 2 revolutions: returns within 1e-6 of its size".

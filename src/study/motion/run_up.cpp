@@ -25,7 +25,6 @@
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
-#include "whirl/study/stop.hpp"
 #include "whirl/transient/steps/integrator.hpp"
 
 namespace whirl::study {
@@ -257,11 +256,10 @@ private:
   }
 
   void save() {
-    if (!options_.checkpoint) return;
-    // At most once a second; rank 0 decides for all.
-    int due = saves_at_once() || context_.results.seconds() - last_saved_ >= 1;
-    MPI_Bcast(&due, 1, MPI_INT, 0, context_.comm);
-    if (!due) return;
+    if (options_.checkpoint) context_.results.save_each_second([this] { return state(); });
+  }
+
+  [[nodiscard]] io::Group state() const {
     io::Group state;
     state.set("done", done_ + 1);
     state.put("kept", kept_, "m", "samples [sample][place][x, y]");
@@ -272,11 +270,9 @@ private:
     state.put("bores", bores_.kept(), "1", "farthest places outside open bores and where [bearing][distance, speed]");
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
-    state.set("seconds", context_.results.seconds());
     put_vector(state, "u", integrator_.scaled(), layout_.shared, "scaled state");
     table_.write(state.child("run_up"));
-    context_.results.save_checkpoint(state);
-    last_saved_ = context_.results.seconds();
+    return state;
   }
 
   void restore(const io::Group& state) {
@@ -360,7 +356,6 @@ private:
   double margin_ = 0;                  // of the films at the last sample
   std::optional<double> thin_at_;
   int total_ = 0, done_ = 0;
-  double last_saved_ = -1e9;
 };
 
 }  // namespace
