@@ -54,9 +54,9 @@ void check_nodes(const std::string& key, const std::vector<int>& nodes, const sy
 void check_carried_at_rest(const std::string& key, const system::Machine& machine, const deck::Report& report) {
   for (const system::Bearing& b : machine.bearings)
     if (!film::facts(b.film).coefficients)
-      return report.fail(key, fmt::format("the film of bearing {} carries no load at rest: speeds must be positive "
+      return report.fail(key, fmt::format("the film of bearing {} carries no load at rest: {} must be positive "
                                           "(linear films have coefficients at rest, too)",
-                                          b.name));
+                                          b.name, key == "speed" ? "the speed" : "speeds"));
 }
 
 void check_held(const system::Machine& machine, const deck::Report& report) {

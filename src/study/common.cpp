@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "first_guess.hpp"
+#include "study/first_guess.hpp"
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/unresolved.hpp"
 #include "whirl/core/error.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "service_speeds.hpp"
+#include "study/service_speeds.hpp"
 #include "service_vibration.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/separation.hpp"

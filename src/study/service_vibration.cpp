@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "service_speeds.hpp"
+#include "study/service_speeds.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {

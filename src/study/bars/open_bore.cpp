@@ -47,17 +47,4 @@ void OpenBores::warn(io::StudySummary& summary, const std::string& unit) const {
                       b.two ? "two pads" : "one pad", b.arc * 180 / std::numbers::pi, b.two ? "" : "s"));
 }
 
-std::vector<double> OpenBores::kept() const {
-  std::vector<double> out;
-  for (const Bore& b : bores_) out.insert(out.end(), {b.farthest, b.at});
-  return out;
-}
-
-void OpenBores::go_on(const std::vector<double>& kept) {
-  for (std::size_t b = 0; b < bores_.size(); ++b) {
-    bores_[b].farthest = kept.at(2 * b);
-    bores_[b].at = kept.at(2 * b + 1);
-  }
-}
-
 }  // namespace whirl::study

@@ -23,9 +23,10 @@ public:
   /// `unit`: of the parameter, empty if there is none.
   void warn(io::StudySummary& summary, const std::string& unit) const;
 
-  /// What was seen so far as numbers, and from them.
-  [[nodiscard]] std::vector<double> kept() const;
-  void go_on(const std::vector<double>& kept);
+  /// What was seen so far.
+  void members(auto& archive) {
+    for (Bore& b : bores_) archive(b.farthest, b.at);
+  }
 
 private:
   struct Bore {

@@ -12,6 +12,7 @@
 #include "study/convergence/shared_convergence.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/located.hpp"
+#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -38,6 +39,7 @@ struct History {
   Located last;
   std::vector<double> value, bracket, seconds;
   double time_error = io::no_value;
+  void members(auto& archive) { archive(value, bracket, seconds, time_error); }  // the last one is stored by rows
 };
 
 // The options of a branch by its name in the results.
@@ -114,7 +116,7 @@ StudyResult MeshConvergence::run(Context& context) {
   if (const io::Group& state = pieces.state(); state.has_group("rows")) {
     rows.read(state.group("rows"));
     first = static_cast<std::size_t>(state.integer("bifurcation"));
-    now = {{}, state.reals("value"), state.reals("bracket"), state.reals("seconds"), state.real("time_error")};
+    unpack(state.reals("history"), now);
     read_summary(state.group("summary"), results.summary());
     trouble = state.text("trouble");
   }
@@ -156,10 +158,7 @@ StudyResult MeshConvergence::run(Context& context) {
       rows.write(state.child("rows"));
       state.set("bifurcation", static_cast<int>(i));
       coarse->follower->write(state.child("located"), {now.last});
-      state.put("value", now.value, unit, "per level");
-      state.put("bracket", now.bracket, unit, "per level");
-      state.put("seconds", now.seconds, "s", "per level");
-      state.set("time_error", now.time_error);
+      put_packed(state, "history", now, "per level");
       write_summary(state.child("summary"), results.summary());
       state.set("trouble", trouble);
       pieces.save(std::move(state));

@@ -19,6 +19,7 @@
 #include "study/motion/motion_record.hpp"
 #include "study/motion/motion_start.hpp"
 #include "study/motion/plane.hpp"
+#include "study/packed.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/transient/steps/integrator.hpp"
@@ -171,7 +172,7 @@ private:
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       put_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k), layout_.shared, "deviation");
     record_.save(state.child("record"), layout_.shared);
-    if (watch_.seen()) watch_.save(state.child("watch"));
+    put_packed(state, "watched", watch_, "where the motion was");
     return state;
   }
 
@@ -183,7 +184,7 @@ private:
       take_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k));
     if (tangents_ && done_ > first_carried()) tangents_->were_carried();
     record_.load(state.group("record"));
-    if (state.has_group("watch")) watch_.load(state.group("watch"));
+    unpack(state.reals("watched"), watch_);
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 

@@ -103,18 +103,4 @@ SectionPlane Watch::choose(const system::ShownPlaces& places) const {
   return {{{{static_cast<int>(best / 2), static_cast<int>(best % 2)}, 1}}, sum_[best] / count_};
 }
 
-void Watch::save(io::Group& group) const {
-  group.put("sum", sum_, "SI", "of positions seen");
-  group.put("low", low_, "SI", "smallest");
-  group.put("high", high_, "SI", "largest");
-  group.set("count", count_);
-}
-
-void Watch::load(const io::Group& group) {
-  sum_ = group.reals("sum");
-  low_ = group.reals("low");
-  high_ = group.reals("high");
-  count_ = group.real("count");
-}
-
 }  // namespace whirl::study

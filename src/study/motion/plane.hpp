@@ -46,8 +46,7 @@ public:
   void see(const std::vector<system::PlaceState>& shown);
   [[nodiscard]] bool seen() const { return count_ > 0; }
   [[nodiscard]] SectionPlane choose(const system::ShownPlaces& places) const;
-  void save(io::Group& group) const;
-  void load(const io::Group& group);
+  void members(auto& archive) { archive(sum_, low_, high_, count_); }
 
 private:
   std::vector<double> sum_, low_, high_;  // [place][x, y]

@@ -59,32 +59,9 @@ void NearRevolutions::forget_before(long revolution) {
   // Those that end the record use a window that begins earlier.
   const long needed =
       std::max(0L, std::min(revolution - static_cast<long>(width / 2), added() - static_cast<long>(width)));
-  for (; first_ < needed; ++first_) all_.pop_front();
-}
-
-std::vector<double> NearRevolutions::flat() const {
-  std::vector<double> out;
-  for (const Revolution& r : all_)
-    for (const auto& place : r.samples)
-      for (const auto& s : place) out.insert(out.end(), s.begin(), s.end());
-  return out;
-}
-
-void NearRevolutions::set(long first, const std::vector<double>& flat, std::size_t places, std::size_t samples) {
-  first_ = first;
-  all_.clear();
-  const std::size_t each = 2 * places * samples;
-  for (std::size_t from = 0; from + each <= flat.size(); from += each) {
-    Revolution r;
-    r.samples.assign(places, std::vector<std::array<double, 2>>(samples));
-    std::size_t k = from;
-    for (auto& place : r.samples)
-      for (auto& s : place) {
-        s = {flat[k], flat[k + 1]};
-        k += 2;
-      }
-    all_.push_back(std::move(r));
-  }
+  if (needed <= first_) return;
+  all_.erase(all_.begin(), all_.begin() + (needed - first_));
+  first_ = needed;
 }
 
 }  // namespace whirl::study

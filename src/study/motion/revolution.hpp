@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <deque>
 #include <vector>
 
 namespace whirl::study {
@@ -16,6 +15,7 @@ struct Revolution {
   [[nodiscard]] double extreme(std::size_t place, std::size_t direction, double sign) const;
   /// Largest distance of a place from `centre`.
   [[nodiscard]] double distance(std::size_t place, const std::array<double, 2>& centre) const;
+  void members(auto& archive) { archive(samples); }
 };
 
 /// The revolutions about the one that is looked at, in the order in which they came.
@@ -38,14 +38,11 @@ public:
   /// Lets go of what no revolution from `revolution` on needs.
   void forget_before(long revolution);
 
-  /// All samples that are here, [revolution][place][sample][x, y], and back.
-  [[nodiscard]] std::vector<double> flat() const;
-  void set(long first, const std::vector<double>& flat, std::size_t places, std::size_t samples);
-  [[nodiscard]] long first() const { return first_; }
+  void members(auto& archive) { archive(first_, all_); }
 
 private:
   [[nodiscard]] long window_begin(long revolution) const;
-  std::deque<Revolution> all_;
+  std::vector<Revolution> all_;
   long first_ = 0;  // number of all_.front(), from 0
 };
 

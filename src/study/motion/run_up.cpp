@@ -20,6 +20,7 @@
 #include "study/motion/revolution.hpp"
 #include "study/motion/run_up_rows.hpp"
 #include "study/motion/short_time.hpp"
+#include "study/packed.hpp"
 #include "study/stored_vector.hpp"
 #include "study/tabled_speeds.hpp"
 #include "whirl/core/error.hpp"
@@ -263,11 +264,9 @@ private:
     io::Group state;
     state.set("done", done_ + 1);
     state.put("kept", kept_, "m", "samples [sample][place][x, y]");
-    state.put("neighbours", neighbours_.flat(), "m",
-              "samples of the last revolutions [revolution][place][sample][x, y]");
-    state.set("first_neighbour", neighbours_.first());
+    put_packed(state, "near_revolutions", neighbours_, "samples of the last revolutions");
     state.put("thinnest", thinnest_, "m", "films [revolution][bearing]");
-    state.put("bores", bores_.kept(), "1", "farthest places outside open bores and where [bearing][distance, speed]");
+    put_packed(state, "bores", bores_, "farthest places outside open bores, and where");
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
     put_vector(state, "u", integrator_.scaled(), layout_.shared, "scaled state");
@@ -282,9 +281,8 @@ private:
     table_.read(state.group("run_up"));
     kept_ = state.reals("kept");
     thinnest_ = state.reals("thinnest");
-    bores_.go_on(state.reals("bores"));
-    neighbours_.set(state.integer("first_neighbour"), state.reals("neighbours"),
-                    places_.names.size() + options_.nodes.size(), static_cast<std::size_t>(options_.samples));
+    unpack(state.reals("bores"), bores_);
+    unpack(state.reals("near_revolutions"), neighbours_);
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
