@@ -7,9 +7,9 @@
 #include <map>
 #include <utility>
 
-#include "study/first_guess.hpp"
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/unresolved.hpp"
+#include "study/make_plant.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"

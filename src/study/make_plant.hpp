@@ -1,5 +1,6 @@
 #pragma once
-// The system of a deck, for studies that follow branches and motions of any kind of system.
+// The system of a deck, for studies that follow branches and motions of any kind of system, and where its equilibria
+// are sought from.
 
 #include <array>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "study/parameter.hpp"
+#include "whirl/core/petsc.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {
@@ -27,5 +29,11 @@ struct PlantRequest {
 
 /// The equilibrium at the present parameter, without forcing. Collective; throws core::NotConverged.
 [[nodiscard]] core::Vector find_rest(system::Plant& plant);
+
+/// A state from which Newton's method finds an equilibrium at the present parameter: the guess of `plant`, or where
+/// films have many states of their own the equilibrium on film meshes of half the cells in each direction, found alike.
+/// What is full and what is not is then known but for a line of cells, and the number of iterations does not grow with
+/// the mesh. Collective.
+[[nodiscard]] core::Vector first_guess(system::Plant& plant);
 
 }  // namespace whirl::study

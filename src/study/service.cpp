@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "study/service_speeds.hpp"
 #include "service_vibration.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/separation.hpp"
 #include "study/sense.hpp"
+#include "study/service_speeds.hpp"
 
 namespace whirl::study {
 namespace {

@@ -1,5 +1,5 @@
 // Rows of tables that studies over the speed look at.
-#include "study/tabled_speeds.hpp"
+#include "study/service_speeds.hpp"
 
 #include <gtest/gtest.h>
 

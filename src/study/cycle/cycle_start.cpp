@@ -6,7 +6,6 @@
 
 #include "study/cycle/coexisting.hpp"
 #include "study/cycle/cycle_follower.hpp"
-#include "study/first_guess.hpp"
 #include "study/make_plant.hpp"
 #include "study/state_rows.hpp"
 #include "study/stored_vector.hpp"

@@ -25,7 +25,7 @@
 #include "study/linear/shaft_modes.hpp"
 #include "study/packed.hpp"
 #include "study/pieces.hpp"
-#include "study/tabled_speeds.hpp"
+#include "study/service_speeds.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/shaft.hpp"

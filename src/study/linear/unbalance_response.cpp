@@ -27,7 +27,7 @@
 #include "study/lost_points.hpp"
 #include "study/packed.hpp"
 #include "study/pieces.hpp"
-#include "study/tabled_speeds.hpp"
+#include "study/service_speeds.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 
