@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "cost.hpp"
 #include "findings.hpp"
@@ -187,16 +186,8 @@ void round(const Layout& layout, const std::vector<std::size_t>& wanted, std::si
 
 }  // namespace
 
-Answers distribute(const Layout& layout, std::size_t n, const Work& work) {
-  Answers all(n);
-  std::vector<std::size_t> wanted(n);
-  std::iota(wanted.begin(), wanted.end(), 0);
-  round(layout, wanted, 0, n, work, all);
-  return all;
-}
-
-Answers distribute(const Layout& layout, std::size_t n, const Work& answer, Pieces& kept, const std::string& name,
-                   const Trail& trail) {
+Answers distribute_rows(const Layout& layout, std::size_t n, const Work& answer, Pieces& kept, const std::string& name,
+                        const Trail& trail) {
   // The trail stands before the answer, behind its own length.
   const Work work = [&](std::size_t item) {
     const std::vector<double> own = answer(item);

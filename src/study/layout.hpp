@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "study/packed.hpp"
 #include "whirl/system/options.hpp"
 
 namespace whirl::study {
@@ -56,11 +58,6 @@ struct Layout {
 [[nodiscard]] bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine, double intervals,
                                   double stages);
 
-/// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
-/// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.
-[[nodiscard]] std::vector<std::vector<double>> distribute(const Layout& layout, std::size_t n,
-                                                          const std::function<std::vector<double>(std::size_t)>& work);
-
 /// What an item leaves behind from which the next one starts, as numbers: to be read after an item, and to be put back
 /// where a resumed run takes an item as it was kept.
 struct Trail {
@@ -70,11 +67,22 @@ struct Trail {
 /// Of items that start anew.
 inline const Trail no_trail{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
 
-/// The same in rounds of about a quarter of a second, after which the answers are `kept` as pieces `name 1`, ..., `name
-/// n`: those of an interrupted run are not computed again, and on one rank the others start from what they would have
-/// started from.
-[[nodiscard]] std::vector<std::vector<double>> distribute(const Layout& layout, std::size_t n,
-                                                          const std::function<std::vector<double>(std::size_t)>& work,
-                                                          Pieces& kept, const std::string& name, const Trail& trail);
+/// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
+/// `work` is collective on the space communicator. If one item throws, all ranks throw. After rounds of about a quarter
+/// of a second the answers are `kept` as pieces `name 1`, ..., `name n`: those of an interrupted run are not computed
+/// again, and on one rank the others start from what they would have started from. Collective on the world.
+[[nodiscard]] std::vector<std::vector<double>> distribute_rows(
+    const Layout& layout, std::size_t n, const std::function<std::vector<double>(std::size_t)>& work, Pieces& kept,
+    const std::string& name, const Trail& trail);
+/// The same with answers that pack() takes.
+template <class Work>
+[[nodiscard]] auto distribute(const Layout& layout, std::size_t n, const Work& work, Pieces& kept,
+                              const std::string& name, const Trail& trail) {
+  using Answer = std::invoke_result_t<const Work&, std::size_t>;
+  const auto row = [&](std::size_t item) { return pack(work(item)); };
+  std::vector<Answer> out;
+  for (const auto& each : distribute_rows(layout, n, row, kept, name, trail)) out.push_back(unpack<Answer>(each));
+  return out;
+}
 
 }  // namespace whirl::study

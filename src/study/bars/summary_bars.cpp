@@ -33,24 +33,6 @@ bool has_answer(const std::function<void()>& compute, std::string* reason) {
   }
 }
 
-std::vector<double> answer_or_reason(const std::function<std::vector<double>()>& compute) {
-  std::vector<double> packed;
-  std::string reason;
-  const bool answered = has_answer([&] { packed = compute(); }, &reason);
-  if (!answered) packed.assign(reason.begin(), reason.end());
-  packed.insert(packed.begin(), answered ? 1 : 0);
-  return packed;
-}
-
-std::string take_reason(std::vector<double>& packed) {
-  const bool answered = packed.front() != 0;
-  packed.erase(packed.begin());
-  if (answered) return {};
-  const std::string reason(packed.begin(), packed.end());
-  packed.clear();
-  return reason;
-}
-
 std::string stem_of(const std::string& name) {
   const std::size_t end = name.find_last_not_of("xy");
   return end == std::string::npos ? name : name.substr(0, end + 1);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,11 +52,20 @@ template <class F>
   return out;
 }
 
-/// What `compute` returns behind a one, or behind a zero the letters of the reason why it has no answer: numbers that
-/// ranks and pieces of a checkpoint hold.
-[[nodiscard]] std::vector<double> answer_or_reason(const std::function<std::vector<double>()>& compute);
-/// The reason in there, empty if there is an answer; of `packed` the answer is left, or nothing.
-[[nodiscard]] std::string take_reason(std::vector<double>& packed);
+/// An answer, or the reason why there is none.
+template <class T>
+struct Answered {
+  std::optional<T> found = {};
+  std::string reason = {};
+  void members(auto& archive) { archive(found, reason); }
+};
+/// What `compute` returns.
+template <class F>
+[[nodiscard]] auto answered(const F& compute) {
+  Answered<decltype(compute())> out;
+  if (!has_answer([&] { out.found = compute(); }, &out.reason)) out.found.reset();
+  return out;
+}
 
 /// "bearing.B1.K." for "bearing.B1.K.xy": what components of one vector or matrix share.
 [[nodiscard]] std::string stem_of(const std::string& name);

@@ -13,7 +13,6 @@
 #include "study/layout.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/shaft_modes.hpp"
-#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/describe.hpp"
@@ -167,11 +166,12 @@ StudyResult ElementConvergence::run(Context& context) {
       out.forward.push_back(known ? spectral::whirl_energy(modes[k].x, modes[k].y, mass).forward : io::no_value);
     }
     results.progress(fmt::format("{}: {} meshes on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
-    return pack(out);
+    return out;
   };
-  const auto packed = distribute(layout, options.elements.size() * meshes, compute, pieces, "mesh", no_trail);
+  const std::vector<Found> found =
+      distribute(layout, options.elements.size() * meshes, compute, pieces, "mesh", no_trail);
   std::vector<std::vector<Found>> all(options.elements.size());
-  for (std::size_t i = 0; i < packed.size(); ++i) all[i / meshes].push_back(unpack<Found>(packed[i]));
+  for (std::size_t i = 0; i < found.size(); ++i) all[i / meshes].push_back(found[i]);
 
   auto& group = results.group();
   group.set("speed", options.speed.value);
@@ -224,7 +224,7 @@ StudyResult ElementConvergence::run(Context& context) {
       if (e > 0) summary.set(fmt::format("{}.shift.{}", name, k + 1), shift[k], "1");
     }
   }
-  summary.points = static_cast<long>(packed.size());
+  summary.points = static_cast<long>(found.size());
   return results.finish("completed", true);
 }
 

@@ -23,7 +23,6 @@
 #include "study/linear/resonances.hpp"
 #include "study/linear/transfer_points.hpp"
 #include "study/lost_points.hpp"
-#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/contract/linear.hpp"
@@ -256,26 +255,26 @@ StudyResult FrequencyResponse::run(Context& context) {
   for (const Way& way : ways) {
     const auto compute = [&](std::size_t i) {
       machine.linearise();  // without an equilibrium nothing has an answer
-      std::vector<double> flat = answer_or_reason([&] { return pack(machine.at(way, frequencies[i])); });
+      auto here = answered([&] { return machine.at(way, frequencies[i]); });
       results.progress(
           fmt::format("{}: {} frequencies on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
-      return flat;
+      return here;
     };
     Matrices& found = all.emplace_back();
     auto& reasons = lost.emplace_back();
-    for (auto& flat : distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
-      reasons.push_back(take_reason(flat));
-      const std::size_t responses = outputs.size() * options.inputs.size();
-      Transfer there{std::vector(responses, Complex(io::no_value, io::no_value)), std::vector(responses, io::no_value)};
-      if (!flat.empty()) there = unpack<Transfer>(flat);
-      found.push_back(std::move(there.values));
-      if (all.size() == 1) rounding.push_back(std::move(there.rounding));
+    const std::size_t responses = outputs.size() * options.inputs.size();
+    const Transfer none{std::vector(responses, Complex(io::no_value, io::no_value)),
+                        std::vector(responses, io::no_value)};
+    for (const auto& [there, why] :
+         distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
+      reasons.push_back(why);
+      found.push_back(there.value_or(none).values);
+      if (all.size() == 1) rounding.push_back(there.value_or(none).rounding);
     }
   }
 
-  const auto one_machine = [&](std::size_t) { return pack(machine.stability()); };
-  const auto stability = unpack<std::optional<solve::Stability>>(
-      distribute(layout, 1, one_machine, pieces, "stability", machine.trail()).front());
+  const auto one_machine = [&](std::size_t) { return machine.stability(); };
+  const auto stability = distribute(layout, 1, one_machine, pieces, "stability", machine.trail()).front();
   // Equilibria know of no loss factor: of such shafts nothing is said.
   if (context.machine.rotor.loss_factor == 0) {
     put_growth(stability ? std::optional(growth_of(*stability)) : std::nullopt,
@@ -284,11 +283,8 @@ StudyResult FrequencyResponse::run(Context& context) {
   }
   // Nobody asked for these frequencies: where one has no answer the study goes on.
   const auto beside = [&](const std::vector<double>& at) {
-    const auto one = [&](std::size_t i) { return answer_of([&] { return pack(machine.at({"machine"}, at[i])); }); };
-    std::vector<Transfer> out;
-    for (const auto& flat : distribute(layout, at.size(), one, pieces, "resonance", machine.trail()))
-      out.push_back(flat.empty() ? Transfer() : unpack<Transfer>(flat));
-    return out;
+    const auto one = [&](std::size_t i) { return answer_of([&] { return machine.at({"machine"}, at[i]); }); };
+    return distribute(layout, at.size(), one, pieces, "resonance", machine.trail());
   };
   const auto [narrow, at_narrow, endless] = between(frequencies, stability ? stability->values : std::vector<Complex>{},
                                                     search_of(context.machine.rotor, 0), beside);

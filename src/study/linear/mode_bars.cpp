@@ -87,7 +87,7 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   // The last one is that of the shaft. Its nodes that were there before are those of the modes here.
   const auto compute = [&](std::size_t i) {
     const bool of_shaft = i == meshes.size();
-    return answer_or_reason([&] {
+    return answered([&] {
       std::vector<double> all;
       const system::Train given = system::train_of(context.machine);
       system::RotorSystem there(layout.space,
@@ -104,19 +104,17 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
       return all;
     });
   };
-  auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", no_trail);
+  const auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", no_trail);
   for (std::size_t i = 0; i < on_meshes.size(); ++i) {
-    std::vector<double>& found = on_meshes[i];
+    const auto& [found, failed] = on_meshes[i];
     const bool of_shaft = i == meshes.size();
     const char* const mesh = of_shaft ? "the shaft with every segment cut in two" : "another mesh of the films";
     const char* const advice = of_shaft ? "cut the segments shorter" : "give the films more cells";
-    const std::string failed = take_reason(found);
-    const bool answered = failed.empty();
     for (std::size_t s = 0, k = 0; s < sampled.size(); ++s)
       for (std::size_t m = 0; m < sampled[s].ids.size(); ++m, k += 3) {
-        if (m >= sampled[s].listed || (answered && !std::isnan(found[k]))) continue;
-        without_[answered ? fmt::format("{} has none like them; {}, or ask for fewer modes ('count')", mesh, advice)
-                          : fmt::format("{} gave no modes ({})", mesh, failed)]
+        if (m >= sampled[s].listed || (found && !std::isnan((*found)[k]))) continue;
+        without_[found ? fmt::format("{} has none like them; {}, or ask for fewer modes ('count')", mesh, advice)
+                       : fmt::format("{} gave no modes ({})", mesh, failed)]
             .insert(sampled[s].ids[m]);
       }
   }
@@ -124,8 +122,9 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
   for (const SampledModes& s : sampled)
     for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);
   Bars bars(here, law_of(context.machine, context.layout));
-  for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
-  if (shaft) bars.add(Axis::shaft, 0.5, on_meshes.back());
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i].found.value_or(std::vector<double>{}));
+  if (shaft) bars.add(Axis::shaft, 0.5, on_meshes.back().found.value_or(std::vector<double>{}));
   std::size_t k = 0;
   for (const SampledModes& s : sampled)
     for (std::size_t m = 0; m < s.ids.size(); ++m) {

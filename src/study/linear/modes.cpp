@@ -23,7 +23,6 @@
 #include "study/linear/separation.hpp"
 #include "study/linear/shaft_alone.hpp"
 #include "study/linear/shaft_modes.hpp"
-#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "study/service_speeds.hpp"
 #include "whirl/deck/units.hpp"
@@ -105,14 +104,14 @@ StudyResult Modes::run(Context& context) {
           fmt::format("{}: {} of {} speeds{}, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted), wanted,
                       results.left(static_cast<double>(std::min(ready, wanted)) / static_cast<double>(wanted)),
                       deck::from_si(list[i], unit), unit, results.seconds()));
-      return pack(FoundModes(std::move(found), std::move(here)));
+      return FoundModes(std::move(found), std::move(here));
     };
-    const auto packed = distribute(layout, list.size(), compute, pieces,
-                                   rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
+    auto found_at = distribute(layout, list.size(), compute, pieces,
+                               rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
     ++rounds;
     std::vector<Station> out;
-    for (std::size_t i = 0; i < packed.size(); ++i) {
-      auto [modes, search] = unpack<FoundModes>(packed[i]);
+    for (std::size_t i = 0; i < found_at.size(); ++i) {
+      auto& [modes, search] = found_at[i];
       const bool asked = std::find(speeds.begin(), speeds.end(), list[i]) != speeds.end();
       out.push_back({list[i], asked, std::move(modes)});
       out.back().listed = static_cast<std::size_t>(search.listed);
@@ -203,10 +202,10 @@ StudyResult Modes::run(Context& context) {
         lost_modes(stations, [&](const ShaftMode& m, double speed) { return surely_grows(m, speed, bars); });
     const auto look_up = [&](std::size_t i) {
       ModeSearch search;
-      return pack(modes_about(lost[i].guide, stations[lost[i].station].speed, search));
+      return modes_about(lost[i].guide, stations[lost[i].station].speed, search);
     };
     const auto found = distribute(layout, lost.size(), look_up, pieces, "onset", walker.trail());
-    for (std::size_t i = 0; i < lost.size(); ++i) put_back(lost[i], unpack<std::vector<ShaftMode>>(found[i]), stations);
+    for (std::size_t i = 0; i < lost.size(); ++i) put_back(lost[i], found[i], stations);
     crossings = crossings_of(stations);
   }
   const auto refine = [&](std::size_t i) {
@@ -219,7 +218,7 @@ StudyResult Modes::run(Context& context) {
       found.second.push_back(search.missed);
       return there;
     });
-    return pack(found);
+    return found;
   };
   const auto refined = distribute(layout, crossings.size(), refine, pieces, "critical", walker.trail());
   struct Critical {
@@ -231,9 +230,8 @@ StudyResult Modes::run(Context& context) {
   std::vector<Critical> criticals;
   std::vector<CrossingPoint> points;
   std::vector<double> errors;  // of the speeds
-  for (const std::vector<double>& r : refined) {
-    auto [point, missed_on_the_way] = unpack<std::pair<CrossingPoint, std::vector<double>>>(r);
-    points.push_back(std::move(point));
+  for (const auto& [point, missed_on_the_way] : refined) {
+    points.push_back(point);
     for (const double each : missed_on_the_way) missed.add(static_cast<int>(each));
   }
   std::vector<LostCrossings> may_be_missing;

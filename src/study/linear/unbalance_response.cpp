@@ -25,7 +25,6 @@
 #include "study/linear/response_record.hpp"
 #include "study/linear/stable_speeds.hpp"
 #include "study/lost_points.hpp"
-#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "study/service_speeds.hpp"
 #include "whirl/core/error.hpp"
@@ -92,19 +91,18 @@ StudyResult UnbalanceResponse::run(Context& context) {
   LostSpeeds lost;
   const auto solve_at = [&](Responder& which, const std::vector<double>& speeds, const std::string& piece) {
     const auto compute = [&](std::size_t i) {
-      auto packed = answer_or_reason([&] { return pack(which.at(speeds[i])); });
+      auto here = answered([&] { return which.at(speeds[i]); });
       results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
                                    deck::from_si(speeds[i], unit), unit, results.seconds()));
-      return packed;
+      return here;
     };
     std::vector<ResponseAtSpeed> out;
     std::size_t k = 0;
-    for (auto& flat : distribute(layout, speeds.size(), compute, pieces, piece, which.trail())) {
-      std::string reason = take_reason(flat);
-      if (reason.empty())
-        out.push_back(unpack<ResponseAtSpeed>(flat));
+    for (auto& [there, why] : distribute(layout, speeds.size(), compute, pieces, piece, which.trail())) {
+      if (there)
+        out.push_back(std::move(*there));
       else
-        lost[speeds[k]] = std::move(reason);
+        lost[speeds[k]] = std::move(why);
       ++k;
     }
     return out;
@@ -172,11 +170,11 @@ StudyResult UnbalanceResponse::run(Context& context) {
     for (const auto& [speed, why] : lost)
       if (why != solve::singular_at_frequency) growing.try_emplace(speed, SpectrumAt{}.growing);
     std::erase_if(speeds, [&](double speed) { return growing.contains(speed); });
-    const auto compute = [&](std::size_t i) { return pack(machine.spectrum(speeds[i])); };
-    const auto found =
+    const auto compute = [&](std::size_t i) { return machine.spectrum(speeds[i]); };
+    auto found =
         distribute(layout, speeds.size(), compute, pieces, fmt::format("{} stability", ++calls), machine.trail());
     for (std::size_t i = 0; i < speeds.size(); ++i) {
-      auto here = unpack<SpectrumAt>(found[i]);
+      SpectrumAt& here = found[i];
       growing[speeds[i]] = here.growing;
       if (!here.values.empty()) spectra[speeds[i]] = std::move(here.values);
     }

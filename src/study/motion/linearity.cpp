@@ -7,7 +7,6 @@
 #include "study/brief.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/motion/linearity_run.hpp"
-#include "study/packed.hpp"
 #include "study/pieces.hpp"
 
 namespace whirl::study {
@@ -18,14 +17,13 @@ StudyResult Linearity::run(Context& context) {
   LinearityRunner runner(context, layout, options);
   Pieces pieces(results, context.resume, options.checkpoint);
   const auto level = [&](std::size_t k) {
-    return pack(runner.record(options.levels[k], [&](double share) {
+    return runner.record(options.levels[k], [&](double share) {
       results.progress(fmt::format("{}: {:.4g} N, {:.0f} %, {:.1f} s", results.summary().name, options.levels[k],
                                    100 * share, results.seconds()));
-    }));
+    });
   };
-  std::vector<LinearityRecord> records;
-  for (const auto& flat : distribute(layout, options.levels.size(), level, pieces, "level", no_trail))
-    records.push_back(unpack<LinearityRecord>(flat));
+  const std::vector<LinearityRecord> records =
+      distribute(layout, options.levels.size(), level, pieces, "level", no_trail);
   const double resolution = records.front().spectra.resolution;
   const auto lines = static_cast<std::size_t>(std::floor(options.highest / resolution * (1 + 1e-12)));
   const auto linear = distribute(
@@ -33,8 +31,8 @@ StudyResult Linearity::run(Context& context) {
       "line", no_trail);
   // Equilibria know of no loss factor: of such shafts nothing is asked.
   if (context.machine.rotor.loss_factor == 0) {
-    const auto one_machine = [&](std::size_t) { return pack(runner.growing()); };
-    put_growth(unpack<std::optional<Growth>>(distribute(layout, 1, one_machine, pieces, "stability", no_trail).front()),
+    const auto one_machine = [&](std::size_t) { return runner.growing(); };
+    put_growth(distribute(layout, 1, one_machine, pieces, "stability", no_trail).front(),
                fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit),
                "No vibration settles into the linear transfer functions that the motion is compared with",
                results.summary());
