@@ -9,6 +9,7 @@
 
 #include "study/bars/beyond.hpp"
 #include "study/bifurcation.hpp"
+#include "study/packed.hpp"
 
 namespace {
 
@@ -225,11 +226,13 @@ TEST(Sentence, NamesWhatIsBornAndWhatVaries) {
             std::string::npos);
 }
 
-TEST(Changes, SurviveTheirTable) {
+TEST(Changes, HaveATableAndSurviveACheckpoint) {
   const std::vector<BranchChange> changes{{3, 4.5, 0, 2, -0.5, false, 1}, {4, 5, 2, 3, 0, true, -1}};
   whirl::io::Group group;
   put_changes(group, changes, "rpm");
-  const auto back = changes_in(group);
+  EXPECT_EQ(group.reals("unstable_after"), (std::vector<double>{2, 3}));
+  EXPECT_EQ(group.reals("bifurcation"), (std::vector<double>{1, -1}));
+  const auto back = unpack<std::vector<BranchChange>>(pack(changes));
   ASSERT_EQ(back.size(), 2U);
   EXPECT_EQ(back[0].below(), 2);
   EXPECT_EQ(back[0].bifurcation, 1);

@@ -43,16 +43,6 @@ void put_changes(io::Group& group, const std::vector<BranchChange>& changes, con
   table.write(group);
 }
 
-std::vector<BranchChange> changes_in(const io::Group& group) {
-  std::vector<BranchChange> out;
-  const auto whole = [&](const char* name, std::size_t k) { return static_cast<int>(group.reals(name)[k]); };
-  for (std::size_t k = 0; k < group.reals("after").size(); ++k)
-    out.push_back({whole("after", k), group.reals("parameter")[k], whole("unstable_before", k),
-                   whole("unstable_after", k), group.reals("slope")[k], whole("fold", k) != 0,
-                   whole("bifurcation", k)});
-  return out;
-}
-
 void BranchVerdict::add(double parameter, StabilityClass c, int unstable) {
   points_.push_back({parameter, c, unstable});
 }

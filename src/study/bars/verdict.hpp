@@ -28,11 +28,11 @@ struct BranchChange {
   /// Unstable values on the side of the smaller, and of the larger parameter. No fold.
   [[nodiscard]] int below() const { return slope > 0 ? before : behind; }
   [[nodiscard]] int above() const { return slope > 0 ? behind : before; }
+  void members(auto& archive) { archive(after, parameter, before, behind, slope, fold, bifurcation); }
 };
 [[nodiscard]] BranchChange change_at(const solve::LocatedEvent& found, int bifurcation);
-/// As a table of results, and from one. `unit` is that of the parameter.
+/// As a table of results. `unit` is that of the parameter.
 void put_changes(io::Group& group, const std::vector<BranchChange>& changes, const std::string& unit);
-[[nodiscard]] std::vector<BranchChange> changes_in(const io::Group& group);
 
 /// Where a branch is stable on one side only.
 struct StabilityLimit {

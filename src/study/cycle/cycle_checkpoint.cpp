@@ -79,7 +79,7 @@ void CycleFollower::save(const solve::ResumePoint& at, Vec u, Vec tangent) {
   nodes_.write(state);
   shafts_.write(state);
   multiplier_bars_.write(state.child("multiplier_bars"));
-  put_changes(state.child("changes"), changes_, unit_);
+  put_packed(state, "changes", changes_, "of stability");
   write_cycle(state.child("cycle"), cycle, stored());
   write_cycle(state.child("tangent"), direction, stored());
   // Cycles asked for begin there, on the mesh before its adaptation.
@@ -87,9 +87,7 @@ void CycleFollower::save(const solve::ResumePoint& at, Vec u, Vec tangent) {
   if (nearest_) {
     io::Group& nearest = state.child("nearest");
     write_cycle(nearest.child("cycle"), nearest_->cycle, stored());
-    nearest.set("index", nearest_->index);
-    nearest.set("parameter", nearest_->parameter);
-    nearest.set("modulus", nearest_->modulus);
+    put_packed(nearest, "point", *nearest_, "of which the cycle is");
     nearest.set("leaves", leaves_ ? 1 : 0);
   }
   state.set("period_scale", problem_->period_scale());
@@ -116,7 +114,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   nodes_.read(state);
   shafts_.read(state);
   multiplier_bars_.read(state.group("multiplier_bars"));
-  changes_ = changes_in(state.group("changes"));
+  changes_ = take_packed<std::vector<BranchChange>>(state, "changes");
   const solve::Cycle cycle = read_cycle(state.group("cycle"), stored()),
                      direction = read_cycle(state.group("tangent"), stored());
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
@@ -139,8 +137,8 @@ std::optional<solve::Restart> CycleFollower::restore() {
   last_ = state.has_group("last") ? read_cycle(state.group("last"), stored()) : cycle;
   if (state.has_group("nearest")) {
     const io::Group& nearest = state.group("nearest");
-    nearest_ = Watched{static_cast<int>(nearest.integer("index")), nearest.real("parameter"), nearest.real("modulus"),
-                       read_cycle(nearest.group("cycle"), stored())};
+    nearest_ = take_packed<Watched>(nearest, "point");
+    nearest_->cycle = read_cycle(nearest.group("cycle"), stored());
     leaves_ = nearest.integer("leaves") != 0;
   }
   filled_ = restart.point.filled;

@@ -172,6 +172,7 @@ private:
     int index = 0;
     double parameter = 0, modulus = 0;  // scaled
     solve::Cycle cycle;
+    void members(auto& archive) { archive(index, parameter, modulus); }  // the cycle is stored by rows
   };
   /// Keeps the point whose leading multiplier is nearest to the unit circle. A branch that is born at a bifurcation
   /// leaves the circle first: points up to the farthest one do not count.
