@@ -13,7 +13,6 @@
 #include "study/bearing/thd_values.hpp"
 #include "study/columns.hpp"
 #include "study/findings.hpp"
-#include "study/packed.hpp"
 #include "study/pieces.hpp"
 #include "study/sense.hpp"
 #include "whirl/core/error.hpp"
@@ -40,7 +39,11 @@ struct SpeedSweep {
 
   [[nodiscard]] io::Group kept(const ThdAtSpeed& film, std::vector<double> state) const {
     io::Group out;
-    put_packed(out, "sweep", *this, "speeds so far");
+    std::vector<double> flat;
+    for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
+    out.put("rows", io::Shape{rows.size(), thd_columns().size()}, std::move(flat), "1", "of the table over the speed");
+    out.put("reasons", reasons, "why there is no film at a speed");
+    out.put("unsettled", unsettled, "speeds at which the temperatures did not settle");
     const thermal::Rows& r = film.rows();
     const auto here = static_cast<std::size_t>(r.count());
     io::Dataset data{{here, state.size() / here}, std::move(state), "1", "temperatures and pressure at the last speed"};
@@ -68,7 +71,14 @@ struct SpeedSweep {
       if (thd_columns()[c].name == column) return rows[row][c];
     throw core::Bug("a column of the table is missing");
   }
-  void members(auto& archive) { archive(rows, reasons, unsettled); }
+
+  void read(const io::Group& from) {
+    const std::vector<double>& flat = from.reals("rows");
+    const auto width = static_cast<std::ptrdiff_t>(thd_columns().size());
+    for (auto at = flat.begin(); at != flat.end(); at += width) rows.emplace_back(at, at + width);
+    reasons = from.strings("reasons");
+    unsettled = from.strings("unsettled");
+  }
 };
 
 // Whether there is a film; `reason` says why not. An error that only some ranks have is no answer.
@@ -159,7 +169,7 @@ StudyResult ThdStudy::run(Context& context) {
   Pieces pieces(results, context.resume, true, core::size_of(context.comm));
   SpeedSweep sweep;
   std::vector<double> last;
-  if (pieces.state().has_dataset("sweep")) sweep = take_packed<SpeedSweep>(pieces.state(), "sweep");
+  if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
   SolvedFilm solved;  // at the last speed
   for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
     const double speed = options.speeds[k].value;
