@@ -193,6 +193,55 @@ TEST(Adjoint, Equilibrium) {
   check_adjoint(problem, generic(problem, 0.3).get());
 }
 
+// The remainder of the linear approximation falls with the square of the step, along a direction with a share of every
+// unknown. The place depends on the parameter, too.
+TEST(Condition, TaylorTestOfLimits) {
+  using Kind = solve::CycleQuantity::Kind;
+  const solve::CycleQuantity all[] = {{Kind::peaks, {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0)}, 0.5},
+                                      {Kind::peaks, {Eigen::Vector2d::Zero()}, 1},
+                                      {Kind::whirl_ratio, {}, 1}};
+  test::SmallSystem s(PETSC_COMM_SELF, 2, 0.1, 1, Bautin{});
+  s.set_scales(Eigen::Vector2d(0.5, 2), Eigen::Vector2d::Ones());
+  for (const int m : {2, 3}) {
+    auto o = degree(m);
+    o.autonomous = true;
+    o.parameter_scale = 0.4;
+    solve::CycleProblem problem(MPI_COMM_WORLD, s, o, test::uneven_mesh(1));
+    const auto cycle = test::sampled(problem.scheme(), problem.mesh(), 6, 0.1, [](double a) {
+      return VectorXd(Eigen::Vector2d(std::cos(a + 0.5) + 0.3 * std::cos(2 * a), 0.9 * std::sin(a) + 0.1));
+    });
+    problem.set_phase_reference(cycle);
+    const core::Vector u = problem.scatter(cycle), d = generic(problem, 0.8), row = generic(problem, 0.4);
+    for (const solve::CycleQuantity& quantity : all) {
+      const auto condition = solve::make_limit(problem, quantity, 1.7, [&](double change) {
+        const double p = s.parameter() + change;
+        return solve::LinearPlace{(Eigen::Matrix2d() << 1, 0.2 * p, -0.3, 2 + p * p).finished(),
+                                  Eigen::Vector2d(0.1, p), 3 + p};
+      });
+      const auto at = [&](double h) {
+        const core::Vector v = moved(u.get(), h, d.get());
+        problem.linearise(v.get(), row.get());
+        return condition->values(v.get(), {})(0);
+      };
+      const double here = at(0);
+      Eigen::MatrixXd none;
+      std::vector<core::Vector> gradients;
+      condition->derivatives(u.get(), {}, none, gradients);
+      const double slope = dot(gradients.front().get(), d.get());
+      EXPECT_GT(std::abs(slope), 1e-3);
+      double last = 0;
+      for (const double h : {2e-3, 1e-3, 5e-4}) {
+        const double left = std::abs(at(h) - here - h * slope);
+        EXPECT_GT(left, 1e-10);
+        if (h < 2e-3) {
+          EXPECT_NEAR(last / left, 4, 0.3) << m << " " << static_cast<int>(quantity.kind);
+        }
+        last = left;
+      }
+    }
+  }
+}
+
 TEST(Condition, GradientsOfCycles) {
   test::SmallSystem s(PETSC_COMM_SELF, 2, 0.1, speed, Flip{});
   solve::CycleProblem problem(MPI_COMM_WORLD, s, degree(3), test::uneven_mesh(1));

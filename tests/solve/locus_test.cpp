@@ -78,6 +78,30 @@ struct Flip {
   }
 };
 
+// x'' + 0.2 x' + x + cubic x^3 = q cos(angle); p is the speed.
+struct Oscillator {
+  const double* q;
+  double cubic;
+  template <class T>
+  Column<T> operator()(double angle, const Column<T>& x, const Column<T>& xdot, T) const {
+    Column<T> f(2);
+    f << xdot(0) - x(1), xdot(1) + 0.2 * x(1) + x(0) + cubic * x(0) * x(0) * x(0) - *q * std::cos(angle);
+    return f;
+  }
+};
+
+// z' = (p + i) z - (1 + q i) |z|^2 z: radius sqrt(p), frequency 1 - p q.
+struct Whirl {
+  const double* q;
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T p) const {
+    const T r = x(0) * x(0) + x(1) * x(1), growth = p - r, turn = 1.0 - *q * r;
+    Column<T> f(2);
+    f << xdot(0) - (growth * x(0) - turn * x(1)), xdot(1) - (growth * x(1) + turn * x(0));
+    return f;
+  }
+};
+
 struct Point {
   double p, q;
   VectorXd inner;
@@ -244,4 +268,118 @@ TEST(Locus, FlipsAndWhereTheyTurnSubcritical) {
   EXPECT_EQ(c.names[c.zeros[0].monitor], solve::generalised_flip);
   EXPECT_EQ(c.names[c.zeros[1].monitor], "monitor");
   for (const auto& zero : c.zeros) EXPECT_NEAR(zero.parameter, 0.5, 1e-6);
+}
+
+namespace {
+
+// Half of the travel of x.
+const solve::CycleQuantity amplitude_of_x{
+    solve::CycleQuantity::Kind::peaks, {Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0)}, 0.5};
+
+solve::LinearPlace both_states(double speed) {
+  return {Eigen::MatrixXd::Identity(2, 2), Eigen::Vector2d::Zero(), speed};
+}
+
+solve::CycleOptions of_degree(int degree, bool autonomous = false) {
+  solve::CycleOptions o;
+  o.degree = degree;
+  o.autonomous = autonomous;
+  return o;
+}
+
+}  // namespace
+
+// |x| = q/|1 - p^2 + 0.2 i p|: the curve of one amplitude turns at the resonance, below which no force suffices.
+TEST(LimitCurve, ForcedCyclesOfOneAmplitude) {
+  const auto force = [](double p) { return 2 * std::abs(test::Complex(1 - p * p, 0.2 * p)); };
+  double q = force(0.8);
+  test::SmallSystem s(PETSC_COMM_SELF, 2, 0.8, 0, Oscillator{&q, 0});
+  solve::CycleProblem problem(MPI_COMM_WORLD, s, of_degree(4), solve::uniform_mesh(24));
+  core::Vector u = problem.make_unknown();
+  (void)test::solve_at(problem, u.get(), 0.8);
+  const auto condition = solve::make_limit(problem, amplitude_of_x, 2, [&](double) { return both_states(s.speed()); });
+  const Curve c = curve(problem, *condition, std::move(u), {&q, 0.2, 1});
+  double low = 1;
+  for (const Point& at : c.points) {
+    EXPECT_NEAR(at.q, force(at.p), 1e-7);
+    low = std::min(low, at.q);
+  }
+  EXPECT_GT(c.points.back().p, 1.1);
+  EXPECT_NEAR(low, 2 * 0.2 * std::sqrt(0.99), 5e-3);  // at p^2 = 0.98, between points
+}
+
+// Cycles by themselves, on another mesh of another degree, at forces that the curve comes to.
+TEST(LimitCurve, DuffingByCyclesElsewhere) {
+  double q = 0.3;
+  test::SmallSystem s(PETSC_COMM_SELF, 2, 0.8, 0, Oscillator{&q, 1});
+  solve::CycleProblem problem(MPI_COMM_WORLD, s, of_degree(4), solve::uniform_mesh(48)),
+      other(MPI_COMM_WORLD, s, of_degree(6), test::uneven_mesh(3));
+  const auto path = [](const solve::CycleProblem& of, Vec u) { return both_states(1).path(of.gather(u)); };
+  core::Vector u = problem.make_unknown();
+  ASSERT_TRUE(test::solve_at(problem, u.get(), 0.8).converged);
+  const double value = amplitude_of_x.of(problem.scheme(), path(problem, u.get()), 1).value;
+  const auto condition =
+      solve::make_limit(problem, amplitude_of_x, value, [&](double) { return both_states(s.speed()); });
+  const Curve c = curve(problem, *condition, std::move(u), {&q, 0.6, 0.1});
+  EXPECT_GT(c.points.back().q, 0.5);
+  for (const Point& at : {c.points[c.points.size() / 2], c.points.back()}) {
+    q = at.q;
+    // From the single term a cos(angle + phase) of the same amplitude.
+    const test::Complex z = at.q / test::Complex(1 + 0.75 * value * value - at.p * at.p, 0.2 * at.p);
+    core::Vector v = other.scatter(test::sampled(other.scheme(), other.mesh(), 1, at.p, [&](double a) {
+      const test::Complex now = std::polar(1.0, a) * z;
+      return VectorXd(Eigen::Vector2d(now.real(), -at.p * now.imag()));
+    }));
+    other.equations_changed();
+    ASSERT_TRUE(test::solve_at(other, v.get(), at.p).converged);
+    const solve::Cycle there = path(other, v.get());
+    double high = 0, low = 0;
+    for (int k = 0; k < 20000; ++k) {
+      const double x = there.at(other.scheme(), k / 20000.0)(0);
+      high = std::max(high, x);
+      low = std::min(low, x);
+    }
+    EXPECT_NEAR((high - low) / 2, value, 1e-6 * value) << at.q;
+  }
+}
+
+TEST(LimitCurve, SelfExcitedCyclesOfOnePeriod) {
+  for (const auto kind : {solve::CycleQuantity::Kind::period, solve::CycleQuantity::Kind::whirl_ratio}) {
+    double q = 0.5;
+    test::SmallSystem s(PETSC_COMM_SELF, 2, 0.2, 2, Whirl{&q});
+    solve::CycleProblem problem(MPI_COMM_WORLD, s, of_degree(4, true), solve::uniform_mesh(16));
+    const auto cycle = test::sampled(problem.scheme(), problem.mesh(), test::two_pi / 0.9, 0.2, [](double a) {
+      return VectorXd(std::sqrt(0.2) * Eigen::Vector2d(std::cos(a), std::sin(a)));
+    });
+    problem.set_phase_reference(cycle);
+    const double value = kind == solve::CycleQuantity::Kind::period ? test::two_pi / 0.9 : 0.9 / 2;
+    const auto condition = solve::make_limit(problem, {kind, {}, 1}, value, [](double) {
+      return solve::LinearPlace{{}, {}, 2};
+    });
+    const Curve c = curve(problem, *condition, problem.scatter(cycle),
+                          {&q, 1, 0.3, nullptr, [&](Vec at) { problem.set_phase_reference(problem.gather(at)); }});
+    for (const Point& at : c.points) EXPECT_NEAR(at.p * at.q, 0.1, 1e-7);  // the error of the mesh
+    EXPECT_GT(c.points.back().q, 0.9);
+  }
+}
+
+// Two peaks of nearly the same height, and one that wanders.
+TEST(LimitCurve, AnotherPeak) {
+  const solve::Scheme scheme = solve::make_scheme(4, solve::Points::radau);
+  const auto mesh = solve::uniform_mesh(20);
+  const auto wave = [&](double first, double phase) {
+    return test::sampled(scheme, mesh, 1, 0, [=](double a) {
+      return VectorXd(Eigen::Vector2d(std::cos(2 * a) + first * std::cos(a - phase), 0));
+    });
+  };
+  const Eigen::Vector2d x(1, 0);
+  const auto before = solve::peak_of(scheme, wave(0.2, 0), x), now = solve::peak_of(scheme, wave(-0.2, 0), x);
+  EXPECT_NEAR(before.value, 1.2, 1e-5);
+  EXPECT_NEAR(std::remainder(before.time, 1.0), 0, 1e-3);
+  EXPECT_NEAR(now.time, 0.5, 1e-3);
+  EXPECT_TRUE(solve::another_peak(scheme, wave(-0.2, 0), x, now, before.time, 1e-3));
+  // cos(a - 0.3) drags the peak with it.
+  const auto moved = solve::peak_of(scheme, wave(3, 0.3), x);
+  EXPECT_GT(std::remainder(moved.time, 1.0), 0.01);
+  EXPECT_FALSE(solve::another_peak(scheme, wave(3, 0.3), x, moved, before.time, 1e-3));
 }

@@ -3,11 +3,13 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/cycle/cycle_quantity.hpp"
 #include "whirl/solve/newton/adjoint.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
@@ -64,5 +66,20 @@ public:
 [[nodiscard]] std::unique_ptr<Condition> make_neimark_sacker(CycleProblem& problem, std::complex<double> multiplier);
 /// A = dF/dx + i omega dF/d(dx/dt), complex; `omega` [rad/s] is a guess.
 [[nodiscard]] std::unique_ptr<Condition> make_hopf(problem::System& system, EquilibriumProblem& problem, double omega);
+
+/// How a place moves with the states x [n] (SI), in the unit of a CycleQuantity: p = a x + b.
+struct LinearPlace {
+  Eigen::Matrix2Xd a;  ///< [2 x n]; empty where no place counts
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  double speed = 0;  ///< of the shaft [rad/s]
+
+  /// The path of the place on a cycle, in two rows.
+  [[nodiscard]] Cycle path(const Cycle& cycle) const;
+};
+/// Cycles with a quantity of the given value: g = quantity/value - 1; no bifurcation. `place` returns what holds of the
+/// present equations where the first parameter is changed by `change` (SI); the derivative by that is a central
+/// difference, all others are exact.
+[[nodiscard]] std::unique_ptr<Condition> make_limit(CycleProblem& problem, CycleQuantity quantity, double value,
+                                                    std::function<LinearPlace(double change)> place);
 
 }  // namespace whirl::solve
