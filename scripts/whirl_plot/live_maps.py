@@ -43,13 +43,15 @@ def loci(results, _):
             ends = [np.ravel([(v - e, v + e, np.nan) for v, e in zip(values, bar)]) for values, bar in ((np.array(v), np.array(e)) for v, e in (list(zip(*found))[::2], list(zip(*found))[1::2]))]
             lines.append(line(*ends, name, colour=study.colour, quiet=True, w=2.5))
         lines.append(line(x, y, name, colour=study.colour, bare=True,
-                          t=[told(name, x, y, bars, k) + (", no border: something else is unstable there already" if others[k] else "") for k in range(len(x))]))
+                          t=[told(name, x, y, bars, k) + (f", {locus.dotted_words(study)}" if others[k] else "") for k in range(len(x))]))
         kinds = study.get("codimension_two/type")
         if kinds is not None and len(kinds):
             x, y, *bars = (np.atleast_1d(study.get(f"codimension_two/{k}")) if study.has(f"codimension_two/{k}") else None
                            for k in ("parameter", "second", "parameter_uncertainty", "second_uncertainty"))
             lines.append(line(x, y, "points of codimension two", colour=INK, m="circle", t=[told(locus.WORDS.get(kind, kind.replace("_", " ")), x, y, bars, k) for k, kind in enumerate(kinds)]))
-    return {"panels": [{"x": (one, of_one), "y": (two, of_two), "height": 440}], "lines": lines, "keys": [{"c": GREY, "t": "border of stability"}, {"c": GREY, "d": 2, "t": "no border"}]}
+    limits = any(s.attribute("bifurcation") == "limit" for s in studies)
+    keys = [{"c": GREY, "t": "border of stability" + ", or stable cycles" * limits}, {"c": GREY, "d": 2, "t": "no border" + ", or unstable cycles" * limits}]
+    return {"panels": [{"x": (one, of_one), "y": (two, of_two), "height": 440}], "lines": lines, "keys": keys}
 
 
 def multipliers(study, _):

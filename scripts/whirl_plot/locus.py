@@ -1,4 +1,4 @@
-"""Curves of bifurcations in two parameters, with their points of codimension two."""
+"""Curves of bifurcations and limits in two parameters, with their points of codimension two."""
 import numpy as np
 
 from .canvas import Line2D, plt
@@ -15,12 +15,20 @@ NAMES = {"flip": "flips", "cyclic_fold": "cyclic folds", "neimark_sacker": "Neim
          "fold": "folds"}
 
 
+def dotted_words(study):
+    """What dots mean along the curve."""
+    return "unstable cycle" if study.attribute("bifurcation") == "limit" else "no border: something else is unstable there already"
+
+
 def last(path):
     return path.rsplit(".", 1)[-1].replace("_", " ")
 
 
 def described(study):
     """Name of the study and what its curve is of, unless the name says that already."""
+    if study.attribute("bifurcation") == "limit":
+        unit = study.attribute("limit_unit")
+        return f"{study.name}: {study.attribute('limit')} is {study.attribute('limit_value'):.6g} {WORDS_OF_UNITS.get(unit, unit) or ''}".rstrip()
     kind = NAMES.get(study.attribute("bifurcation"), "bifurcations")
     return study.name if kind.lower() in study.name.lower() else f"{study.name}: {kind}"
 
@@ -107,13 +115,13 @@ def pieces(study):
 
 
 def draw_curve(axis, study):
-    """The curve: a line where it is a border of stability, thin dots where another motion has become unstable before."""
-    named = False
-    for x, y, border in pieces(study):
+    """The curve: a line where it is a border of stability or of stable cycles, thin dots elsewhere. Returns what these mean."""
+    found = pieces(study)
+    named = next((k for k, (*_, border) in enumerate(found) if border), 0)
+    for k, (x, y, border) in enumerate(found):
         style = {"linestyle": "-"} if border else {"linestyle": ":", "linewidth": 1.0}
-        axis.plot(x, y, color=study.colour, label=described(study) if border and not named else "_", **style)
-        named = named or border
-    return any(not border for *_, border in pieces(study))
+        axis.plot(x, y, color=study.colour, label=described(study) if k == named else "_", **style)
+    return {dotted_words(study)} if any(not border for *_, border in found) else set()
 
 
 def crossings(study):
@@ -231,9 +239,9 @@ def draw_together(results):
         return []
     figure, axis = plt.subplots(figsize=(8, 5.5))
     points = []
-    dotted = False
+    dotted = set()
     for study in studies:
-        dotted = draw_curve(axis, study) or dotted
+        dotted |= draw_curve(axis, study)
         for x, y, across, upward in bars_of(study):
             axis.errorbar(x, y, **({"xerr": across} if across else {"yerr": upward}), fmt="none", ecolor=study.colour, elinewidth=1.2)
         kinds = study.get("codimension_two/type")
@@ -246,6 +254,8 @@ def draw_together(results):
     for put, key in ((axis.set_xlabel, "parameter"), (axis.set_ylabel, "second")):
         name, unit = name_and_unit(studies[0], key)
         put(name + (f" [{unit}]" if unit else ""))
-    return save(figure, results.whole("curves of bifurcations"), "loci", "where motions lose stability, over two parameters",
+    limits = [s.attribute("bifurcation") == "limit" for s in studies]
+    about = [words for words, there in (("where motions lose stability", not all(limits)), ("where cycles have a given size or period", any(limits))) if there]
+    return save(figure, results.whole("curves of bifurcations" + " and limits" * any(limits)), "loci", ", ".join([*about, "over two parameters"]),
                 [line for line in axis.get_lines() if not line.get_label().startswith("_")]
-                + [Line2D([], [], color=GREY, linestyle=":", linewidth=1.0, label="no border: something else is unstable there already")] * dotted)
+                + [Line2D([], [], color=GREY, linestyle=":", linewidth=1.0, label=words) for words in sorted(dotted)])

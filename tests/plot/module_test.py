@@ -197,11 +197,22 @@ class Curve:
         return {"stable_side": self.side, "start": 15}.get(name, default)
 
 
+class Limit(Curve):
+    """Cycles of one amplitude: no border of anything."""
+    name = "vibration"
+
+    def attribute(self, name, default=""):
+        return {"bifurcation": "limit", "limit": "0-peak amplitude in y at B2", "limit_value": 60.0, "limit_unit": "um", "larger_side": "above"}.get(name, default)
+
+
 def borders_of_curves():
     for side in ("below", "above"):
         (where, above), = locus.crossings(Curve(side))(1.03)
         assert abs(where - 2.03) < 1e-9 and above == (side == "below"), (side, where, above)
         assert locus.crossings(Curve(side))(1.8) == [], "where something else is unstable already there is no border"
+    assert locus.crossings(Limit(""))(1.03) == [], "a limit bounds no stability"
+    assert locus.described(Limit("")) == "vibration: 0-peak amplitude in y at B2 is 60 \u00b5m", locus.described(Limit(""))
+    assert locus.dotted_words(Limit("")) == "unstable cycle" and "no border" in locus.dotted_words(Curve("below"))
 
 
 class Bearings:

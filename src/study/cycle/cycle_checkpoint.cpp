@@ -101,6 +101,7 @@ void CycleFollower::save(const solve::ResumePoint& at, Vec u, Vec tangent) {
   write_summary(state.child("summary"), context_.results.summary());
   write_seeds(state.child("flips"), seeds_, stored());
   write(state.child("located"), located_);
+  limits_.write(state, stored());
   pieces_->save(std::move(state));
 }
 
@@ -134,6 +135,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   if (pieces_->same_layout()) restart.memory = read_memory(state.group("memory"), restart.u.get());
   seeds_ = read_seeds(state.group("flips"), stored());
   located_ = read(state.group("located"));
+  limits_.read(state, stored());
   last_ = state.has_group("last") ? read_cycle(state.group("last"), stored()) : cycle;
   if (state.has_group("nearest")) {
     const io::Group& nearest = state.group("nearest");

@@ -48,7 +48,8 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
       nodes_(options_.nodes, unit_),
       shafts_(unit_),
       multiplier_bars_(multiplier_table(unit_)),
-      keeps_located_(is_followed(context, context.results.summary().name)) {
+      keeps_located_(is_followed(context, context.results.summary().name)),
+      limits_(context, context.results.summary().name) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
   continuation_.from = (options_.start ? options_.start->value : range.from) / scale_;
@@ -159,6 +160,7 @@ void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle orbit = problem_->orbit(u);
   record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
   nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
+  limits_.see(point.monitors);
   if (!point.between) add_margin(point.parameter, orbit);
   report_between(last_ ? *last_ : cycle, cycle);
   watch(point, cycle);
@@ -290,6 +292,16 @@ StudyResult CycleFollower::run() {
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
   callbacks.drawn = [this](Vec v) { return drawn(v); };
+  // What was known already has not set the system.
+  const auto orbit_of = [this](Vec v) {
+    system_->set_parameter(problem_->gather(v).parameter);
+    return problem_->orbit(v);
+  };
+  if (!limits_.empty())
+    callbacks.monitors = [&](Vec v, Vec) { return limits_.of(orbit_of(v), problem_->orbit_scheme(), *system_); };
+  callbacks.on_zero = [this](const solve::LocatedZero& zero, Vec v) {
+    if (zero.located) limits_.pass(zero.monitor, problem_->gather(v));
+  };
   if (problem_->has_adjoint())
     callbacks.refine = [this](const solve::LocatedEvent& e, Vec v, Vec t) {
       return solve::refine(*problem_, e, v, t, newton_);
@@ -297,11 +309,6 @@ StudyResult CycleFollower::run() {
   // The branch has touched, as it was asked to, or its film has become too thin.
   bool contact = false;
   if (films_.exists() || options_.max_eccentricity) {
-    // What was known already has not set the system.
-    const auto orbit_of = [this](Vec v) {
-      system_->set_parameter(problem_->gather(v).parameter);
-      return problem_->orbit(v);
-    };
     callbacks.limit = [this, orbit_of](Vec v) { return margin(orbit_of(v), *system_); };
     callbacks.why = [this, orbit_of, &contact](Vec v) {
       const solve::Cycle orbit = orbit_of(v);
@@ -356,6 +363,7 @@ StudyResult CycleFollower::run() {
   results.summary().points = end.points - (returned_ ? of_last_step_ : 0);
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_, stored());
   if (keeps_located_) write(group.child("located"), located_);
+  limits_.write(group, stored());
   if (returned_) results.summary().set("returned", end.parameter, unit_);
   if (end.limited && last_)
     put_contact(results.summary(), end.parameter, unit_, end.bracket, law(), contacts_there(*last_, end.parameter));

@@ -17,6 +17,7 @@
 #include "study/cycle/cycle_record.hpp"
 #include "study/cycle/node_record.hpp"
 #include "study/located.hpp"
+#include "study/locus/limit.hpp"
 #include "study/pieces.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/io/table.hpp"
@@ -258,10 +259,11 @@ private:
   std::vector<BranchChange> changes_;
   bool keeps_located_;            // a locus of the deck starts from one of them
   std::vector<Located> located_;  // one for each bifurcation of the summary
-  Eigen::MatrixXd vanishing_;     // of the last point of a branch that may return
-  double largest_ = 0;            // its largest norm so far
-  int filled_ = 0;                // points between the ends of steps so far
-  int of_last_step_ = 0;          // points, with those between its ends
+  LimitsOnBranch limits_;
+  Eigen::MatrixXd vanishing_;  // of the last point of a branch that may return
+  double largest_ = 0;         // its largest norm so far
+  int filled_ = 0;             // points between the ends of steps so far
+  int of_last_step_ = 0;       // points, with those between its ends
   bool returned_ = false;
 };
 

@@ -34,6 +34,20 @@ double width(const deck::Range& range) {
   return std::abs(range.to - range.from);
 }
 
+Located bifurcation_of(const LocusOptions& options, const io::Group& branch, MPI_Comm comm) {
+  if (!branch.has_group("located"))
+    throw core::NotConverged(
+        fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
+  // Every rank follows the curve on a whole machine.
+  io::Group located = branch.group("located");
+  io::make_whole(located, comm);
+  const std::vector<Located> all = read_located(located);
+  if (static_cast<std::size_t>(options.bifurcation) > all.size())
+    throw core::NotConverged(
+        fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), options.bifurcation));
+  return all[static_cast<std::size_t>(options.bifurcation) - 1];
+}
+
 }  // namespace
 
 LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : context_(context), options_(options) {
@@ -45,17 +59,8 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   if (!context.earlier.has_group(io::safe_name(options.of)))
     throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
   const io::Group& group = context.earlier.group(io::safe_name(options.of));
-  if (!group.has_group("located"))
-    throw core::NotConverged(
-        fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
-  // Every rank follows the curve on a whole machine.
-  io::Group located = group.group("located");
-  io::make_whole(located, context.comm);
-  const std::vector<Located> all = read_located(located);
-  if (static_cast<std::size_t>(options.bifurcation) > all.size())
-    throw core::NotConverged(
-        fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), options.bifurcation));
-  seed_ = all[static_cast<std::size_t>(options.bifurcation) - 1];
+  seed_ = options.limit ? passing_of(options, context.results.summary().name, group, context.comm)
+                        : bifurcation_of(options, group, context.comm);
   if (of_cycles_ && seed_.cycle.mesh.size() < 2)
     throw core::NotConverged(
         fmt::format("bifurcation {} of '{}' is the Hopf point where its cycles are born: follow it from the branch of "
@@ -137,7 +142,7 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
   branch_ = cycles_.get();
   const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());
-  condition_ = cycles_->condition(seed_.event, seed_.critical);
+  condition_ = condition_of(*cycles_, *system_, seed_.critical);
 }
 
 void LocusFollower::make_equilibria() {
@@ -198,6 +203,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   start_second_ = start_second;
   rows_.clear();
   last_swing_.resize(0, 0);
+  peak_times_.clear();
   inner_sign_ = 0;
   length_ = 0;
   spread_.clear();
@@ -207,6 +213,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     core::check(VecCopy(restart->u.get(), start.get()));
     // Whether the first step passes amplitude zero is seen by comparison with the last point.
     if (cycles_ && cycles_->options().autonomous) last_swing_ = swing(start.get());
+    if (options_.limit) watch_peaks(start.get(), last_);
   }
   problem_->prime(start.get());
 
@@ -251,6 +258,8 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     const Row before = last_;
     last_ = row_at(whole, point.parameter);
     put_others(whole, last_);
+    if (options_.limit) watch_peaks(whole, before);
+    if (options_.limit && point.index == 0) seed_.sensitivity = slope_of_limit(whole);
     if (cycles_ && cycles_->options().autonomous) {
       last_swing_ = swing(whole);
       last_.amplitude = amplitude_of(last_swing_);
@@ -354,7 +363,6 @@ StudyResult LocusFollower::run() {
   points.put("second", second, range.unit, "second parameter");
   points.put("parameter_uncertainty", first_bar, first_range_.unit, "estimated error of the first parameter");
   points.put("second_uncertainty", second_bar, range.unit, "of the second one");
-  group.set("bifurcation", solve::name_of(seed_.event));
   group.set("of", options_.of);
   group.set("parameter", first_.path);
   group.set("parameter_unit", first_range_.unit);
@@ -362,12 +370,7 @@ StudyResult LocusFollower::run() {
   group.set("second_unit", range.unit);
   group.set("picture_tolerance", options_.picture_tolerance);
   group.set("start", static_cast<int>(back.size()));
-  const BranchKind kind{of_cycles_.has_value(), of_cycles_ && of_cycles_->origin == CycleBranchOptions::Origin::hopf,
-                        of_cycles_ ? of_cycles_->period : 1, true};
-  group.set("born", born_at(type_of(seed_.event), kind));
-  // Of a fold both sides depend on the motion.
-  if (seed_.event != solve::Event::fold && seed_.event != solve::Event::cyclic_fold && seed_.sensitivity != 0)
-    group.set("stable_side", seed_.sensitivity > 0 ? "below" : "above");
+  put_kind();
   results.summary().points = static_cast<long>(all.size());
   const auto status = [&](const solve::BranchEnd& end) {
     return fmt::format("ended at {:.6g} {} of {}: {}", deck::from_si(end.parameter * second_scale_, range.unit),

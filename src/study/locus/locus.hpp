@@ -1,8 +1,10 @@
 #pragma once
-// Bifurcations in two parameters: a curve of folds, Hopf points, flips or Neimark-Sacker points.
+// Bifurcations in two parameters: a curve of folds, Hopf points, flips or Neimark-Sacker points; or cycles that keep an
+// amplitude or a period.
 
 #include <optional>
 
+#include "study/locus/limit.hpp"
 #include "study/parameter.hpp"
 #include "whirl/study/study.hpp"
 
@@ -12,6 +14,7 @@ struct LocusOptions {
   std::string name;
   std::string of;                          ///< an earlier cycle_branch or equilibrium_branch of the deck
   int bifurcation = 1;                     ///< which of its bifurcations, 1-based, in the order of summary.json
+  std::optional<LimitOptions> limit;       ///< instead of a bifurcation
   Parameter second;                        ///< the second parameter; the branch's own is the first
   std::optional<deck::Range> first_range;  ///< where the curve may go in the first one; the branch's range if absent
   int max_points = 500;

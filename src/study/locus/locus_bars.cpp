@@ -141,7 +141,7 @@ std::unique_ptr<LocusFollower::Elsewhere> LocusFollower::carried_to(const CycleM
     out->rest->from_state(x.get(), cycle.parameter, u.get());
   }
   const core::Vector along = solve::any_tangent(*branch, u.get());
-  out->condition = cycles_ ? out->cycles->condition(seed_.event, critical)
+  out->condition = cycles_ ? condition_of(*out->cycles, system, critical, mesh.film)
                            : solve::condition_of(system, *out->rest, seed_.event, critical);
   out->problem =
       std::make_unique<solve::AugmentedProblem>(*branch, *out->condition, along.get(), second(system, mesh.film));

@@ -69,14 +69,22 @@ io::Brief Locus::brief(const StudyResult& result, std::span<const io::StudySumma
   const std::string one = parameter_word(group.text("parameter")), two = parameter_word(options.second.path);
   const auto [low, high] = std::ranges::minmax_element(first->values);
   const auto [least, most] = std::ranges::minmax_element(over->values);
-  const std::string what = in_words_of(words_of_curves, group.text("bifurcation"));
+  const bool limit = options.limit.has_value();
+  const std::string what =
+      limit
+          ? fmt::format("The {} is {} along a curve from '{}', which", words_of(*options.limit),
+                        io::reading({group.real("limit_value"), group.text("limit_unit")}), options.of)
+          : fmt::format("The curve of {} of '{}'", in_words_of(words_of_curves, group.text("bifurcation")), options.of);
   io::Brief brief;
-  brief.sentences.push_back(fmt::format("The curve of {} of '{}' runs over {} {} and {} {}.", what, options.of, one,
-                                        from_to(*low, *high, first->unit), two, from_to(*least, *most, over->unit)));
+  brief.sentences.push_back(fmt::format("{} runs over {} {} and {} {}.", what, one, from_to(*low, *high, first->unit),
+                                        two, from_to(*least, *most, over->unit)));
   const auto start = static_cast<std::size_t>(group.integer("start"));
   if (others && others->values[start] == 0 && group.has_attribute("stable_side"))
     brief.sentences.push_back(fmt::format("Where it was begun, the motion is stable on the side of the {} {}.",
                                           group.text("stable_side") == "below" ? "lower" : "higher", one));
+  if (limit)
+    brief.sentences.push_back(fmt::format("Where it was begun, the {} is larger at {} {}.", words_of(*options.limit),
+                                          group.text("larger_side") == "below" ? "lower" : "higher", one));
   io::BriefTable table{"Ends and extremes of the curve",
                        {{"where"}, {one, first->unit}, {two, over->unit}, {"beside"}},
                        {},
@@ -98,7 +106,9 @@ io::Brief Locus::brief(const StudyResult& result, std::span<const io::StudySumma
   add(first->values.size() - 1, "other end");
   for (const auto& [k, where] : shown)
     table.rows.push_back({where, curve.at("parameter", k), curve.at("second", k),
-                          others && others->values[k] > 0 ? "something else is unstable" : ""});
+                          !others || others->values[k] == 0 ? ""
+                          : limit                           ? "the cycle is unstable"
+                                                            : "something else is unstable"});
   io::BriefTable special{
       "Special points of the curve", {{"what"}, {one, first->unit}, {two, over->unit}, {"curve"}}, {}, {}};
   for (const io::CodimensionTwo& c : result.summary.codimension_two) {

@@ -38,6 +38,7 @@ solve::Restart LocusFollower::restore(const io::Group& state, Vec like) {
   length_ = state.real("length");
   spread_.read(state.group("spread"));
   zeros_ = static_cast<int>(state.integer("zeros"));
+  seed_.sensitivity = state.real("sensitivity");
   const auto& generalised = state.reals("generalised");
   generalised_.clear();
   for (std::size_t k = 0; k + 2 < generalised.size(); k += 3)
@@ -66,6 +67,7 @@ void LocusFollower::save(const solve::ResumePoint& at, Vec whole, Vec tangent) {
   state.set("length", length_);
   spread_.write(state.child("spread"));
   state.set("zeros", zeros_);
+  state.set("sensitivity", seed_.sensitivity);
   std::vector<double> generalised;
   for (const auto& [first, second, reach] : generalised_) generalised.insert(generalised.end(), {first, second, reach});
   state.put("generalised", generalised, "1", "generalised points that are confirmed, and how far around");

@@ -8,6 +8,7 @@
 #include "study/bars/beyond.hpp"
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/shaft_mesh.hpp"
+#include "study/bifurcation.hpp"
 #include "study/locus/locus_follower.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/brief.hpp"
@@ -52,16 +53,36 @@ void LocusFollower::put_curve(const std::vector<Row>& rows, const std::vector<Ro
   }
   auto& summary = context_.results.summary();
   if (marked > 0)
-    summary.warnings.push_back(fmt::format(
-        "at {} of {} points, {} from {} to {} {}, the curve is no border of stability: something else is unstable "
-        "there "
-        "already",
-        marked, rows.size(), parameter_word(options_.second.path), io::reading(low), io::reading(high), second));
+    summary.warnings.push_back(
+        fmt::format("at {} of {} points, {} from {} to {} {}, {}", marked, rows.size(),
+                    parameter_word(options_.second.path), io::reading(low), io::reading(high), second,
+                    options_.limit ? "the cycle is unstable: the machine does not keep this motion"
+                                   : "the curve is no border of stability: something else is unstable there already"));
   waves.warn(summary, second);
   warn_curve_without_shaft_mesh(summary, context_.machine, context_.layout);
   for (const io::Table::Column& column : table.columns())
     summary.curve.push_back({column.name, column.unit, table.column(column.name)});
   table.write(context_.results.group().child("locus"));
+}
+
+void LocusFollower::put_kind() {
+  auto& group = context_.results.group();
+  if (options_.limit) {
+    const deck::Quantity& value = options_.limit->value;
+    group.set("bifurcation", "limit");
+    group.set("limit", words_of(*options_.limit));
+    group.set("limit_value", deck::from_si(value.value, value.unit));
+    group.set("limit_unit", value.unit);
+    group.set("larger_side", seed_.sensitivity > 0 ? "above" : "below");
+    return;
+  }
+  const BranchKind kind{of_cycles_.has_value(), of_cycles_ && of_cycles_->origin == CycleBranchOptions::Origin::hopf,
+                        of_cycles_ ? of_cycles_->period : 1, true};
+  group.set("bifurcation", solve::name_of(seed_.event));
+  group.set("born", born_at(type_of(seed_.event), kind));
+  // Of a fold both sides depend on the motion.
+  if (seed_.event != solve::Event::fold && seed_.event != solve::Event::cyclic_fold && seed_.sensitivity != 0)
+    group.set("stable_side", seed_.sensitivity > 0 ? "below" : "above");
 }
 
 }  // namespace whirl::study

@@ -1,8 +1,9 @@
 #pragma once
-// A curve of bifurcations in two parameters: what it is followed with.
+// A curve of bifurcations, or of cycles that keep a quantity, in two parameters: what it is followed with.
 
 #include <Eigen/Core>
 #include <array>
+#include <complex>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -100,6 +101,14 @@ private:
     bool unclear = false;
   };
   [[nodiscard]] Verdict judge(Vec whole, double reach);
+  // The condition of cycles on the films of a system.
+  [[nodiscard]] std::unique_ptr<solve::Condition> condition_of(solve::CycleProblem& cycles, system::RotorSystem& system,
+                                                               std::complex<double> critical,
+                                                               const FilmFactor& film = {1, 1});
+  // Of a limit: d(quantity/value)/d(first parameter) along the branch; when its peaks are, with a warning where another
+  // one takes over.
+  [[nodiscard]] double slope_of_limit(Vec whole);
+  void watch_peaks(Vec whole, const Row& before);
   // The curve and its points of codimension two on other meshes.
   struct Elsewhere;
   [[nodiscard]] MeshLaw law() const;
@@ -117,6 +126,8 @@ private:
   // Of the whole curve, the start of which is row `start`: a few are computed, and those between them interpolated.
   [[nodiscard]] std::vector<RowBar> bars_of(const std::vector<Row>& rows, std::size_t start);
   void put_curve(const std::vector<Row>& rows, const std::vector<RowBar>& bars);
+  // What the curve is one of.
+  void put_kind();
   // Puts the unstable eigenvalues or multipliers beside the critical ones into `at`.
   void put_others(Vec whole, Row& at);
   [[nodiscard]] std::vector<double> films(Vec whole) const;
@@ -163,6 +174,7 @@ private:
   double length_ = 0;                                                    // from the start, scaled
   SpreadPoints spread_{points_each_way}, done_spread_{points_each_way};  // of the present direction, and the other one
   Eigen::MatrixXd last_swing_;                                           // of the last point
+  std::vector<double> peak_times_;                                       // likewise
   // Generalised points that are confirmed: both parameters, and how far around was looked at, scaled.
   struct Confirmed {
     double first, second, looked;

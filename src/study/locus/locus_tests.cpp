@@ -39,7 +39,7 @@ void LocusFollower::put_others(Vec whole, Row& at) {
     all = cycle_stability(*cycles_, *system_);
     if (!all.mesh_waves.empty()) at.mesh_wave = Row::unknown_frequency;
     const double angle = row_at(whole, 0).angle;
-    critical.push_back(std::polar(1.0, angle));
+    if (!options_.limit) critical.push_back(std::polar(1.0, angle));
     if (seed_.event == solve::Event::neimark_sacker) critical.push_back(std::polar(1.0, -angle));
     if (cycles_->options().autonomous) critical.emplace_back(1);
   } else {
