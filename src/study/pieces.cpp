@@ -8,75 +8,47 @@
 
 namespace whirl::study {
 
+// Vectors by rows are datasets of their own.
+void members(auto& archive, solve::ReplayLog::Rows& v) {
+  archive(v.whole);
+  if (v.whole) archive(v.values);
+}
+void members(auto& archive, solve::ReplayLog::Entry& e) {
+  archive(e.kind, e.question, e.state, e.answer.numbers, e.answer.text, e.answer.vectors);
+}
+
 namespace {
 
 constexpr double least_seconds = 0.5;  // between two files
 
-constexpr int format = 5;
-constexpr std::int64_t as_rows = -1;  // the size of a vector that is a dataset of its own
+constexpr int format = 6;
 
 std::string name_of_rows(std::size_t k) {
   return "vector " + std::to_string(k);
 }
 
 void write_log(io::Group& group, const solve::ReplayLog& replay_log) {
-  std::vector<double> numbers;
-  std::vector<std::int64_t> sizes;
-  std::vector<std::string> texts;
-  const auto add = [&](const std::vector<double>& part) {
-    numbers.insert(numbers.end(), part.begin(), part.end());
-    sizes.push_back(static_cast<std::int64_t>(part.size()));
-  };
+  put_packed(group, "entries", replay_log.entries(), "questions and answers");
   std::size_t by_rows = 0;
-  for (const auto& e : replay_log.entries()) {
-    add(e.question);
-    add(e.answer.numbers);
-    sizes.push_back(static_cast<std::int64_t>(e.state));
-    sizes.push_back(static_cast<std::int64_t>(e.answer.vectors.size()));
-    for (const solve::ReplayLog::Rows& v : e.answer.vectors) {
-      if (v.whole) {
-        add(v.values);
-        continue;
-      }
-      sizes.push_back(as_rows);
-      group.put(name_of_rows(++by_rows),
-                io::Dataset{{v.values.size()}, v.values, "1", "of an answer", io::RowRange{v.begin, v.total}});
-    }
-    texts.insert(texts.end(), {e.kind, e.answer.text});
-  }
-  group.put("numbers", std::move(numbers), "1", "questions and answers, and their vectors unless these stand apart");
-  group.put("sizes", std::move(sizes),
-            "of each entry: of question and answer, state, number of vectors and their sizes; -1: stands apart");
-  group.put("texts", std::move(texts), "kind of question, and what was said");
+  for (const auto& e : replay_log.entries())
+    for (const solve::ReplayLog::Rows& v : e.answer.vectors)
+      if (!v.whole)
+        group.put(name_of_rows(++by_rows),
+                  io::Dataset{{v.values.size()}, v.values, "1", "of an answer", io::RowRange{v.begin, v.total}});
 }
 
 std::vector<solve::ReplayLog::Entry> read_log(const io::Group& group) {
-  std::vector<solve::ReplayLog::Entry> entries;
-  const auto& sizes = group.integers("sizes");
-  const auto& texts = group.strings("texts");
-  auto at = group.reals("numbers").begin();
-  const auto next = [&at](std::int64_t n) {
-    const auto begin = std::exchange(at, at + n);
-    return std::vector<double>(begin, at);
-  };
+  auto entries = take_packed<std::vector<solve::ReplayLog::Entry>>(group, "entries");
   std::size_t by_rows = 0;
-  for (std::size_t k = 0, s = 0; s < sizes.size(); ++k) {
-    solve::ReplayLog::Entry e{texts[2 * k], next(sizes[s]), {next(sizes[s + 1]), texts[2 * k + 1]}};
-    e.state = static_cast<solve::ReplayLog::State>(sizes[s + 2]);
-    const std::int64_t vectors = sizes[s + 3];
-    s += 4;
-    for (std::int64_t v = 0; v < vectors; ++v, ++s) {
-      if (sizes[s] != as_rows) {
-        e.answer.vectors.push_back({true, 0, static_cast<std::size_t>(sizes[s]), next(sizes[s])});
-        continue;
-      }
+  for (auto& e : entries)
+    for (solve::ReplayLog::Rows& v : e.answer.vectors) {
+      v.total = v.values.size();
+      if (v.whole) continue;
       const io::Dataset& data = group.dataset(name_of_rows(++by_rows));
       const auto& rows = std::get<std::vector<double>>(data.values);
       const io::RowRange share = data.share.value_or(io::RowRange{0, rows.size()});
-      e.answer.vectors.push_back({!data.share, share.begin, share.total, rows});
+      v = {!data.share, share.begin, share.total, rows};
     }
-    entries.push_back(std::move(e));
-  }
   return entries;
 }
 
