@@ -10,6 +10,7 @@
 
 #include "bench/timing.hpp"
 #include "support/half_rotor.hpp"
+#include "support/uniform_shaft.hpp"
 #include "system/start.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/session.hpp"
@@ -41,30 +42,6 @@ system::Train rigid(int cells) {
   film.reference_speed = 160;
   film.cells = {cells, 4};
   return test::half_rotor(film, 0.2 * clearance);
-}
-
-// A uniform shaft between two bearings: eight states a node.
-system::Train shaft(int segments) {
-  system::Train t;
-  rotor::Segment piece;
-  piece.length = 2.0 / segments;
-  piece.outer_mass_diameter = 0.1;
-  t.rotor.segments.assign(static_cast<std::size_t>(segments), piece);
-  t.rotor.material.modulus = {{293.15, 2.1e11}};
-  t.rotor.stiffness_damping = 1e-5;
-  for (const int node : {1, segments + 1}) {
-    system::Support s;
-    s.node = node;
-    s.geometry = {film::Geometry::Bore::cylindrical, 0.05, 0.05, 1e-4, 0, 0, 0};
-    film::Reynolds film;
-    film.cells = {24, 6};
-    film.cavitation = film::Reynolds::Cavitation::half_sommerfeld;
-    s.film = film;
-    s.lubricant = {0.02, 860};
-    t.supports.push_back(s);
-  }
-  t.unbalance = {{segments / 2 + 1, 1e-4, 0}};
-  return t;
 }
 
 core::Vector at_rest(system::RotorSystem& s) {
@@ -217,13 +194,13 @@ int main(int argc, char** argv) {
     }
   fmt::print("\ncycles of whole shafts, ms a point{:>27} {:>8} {:>8}\n", "states", "dense", "modes");
   for (const int segments : {8, 14, 20, 26, 32, 44}) {
-    const double dense = point(shaft(segments), {}, Joining::one_by_one, 60),
-                 modes = point(shaft(segments), {}, Joining::modes, 60);
+    const double dense = point(test::uniform_shaft(segments), {}, Joining::one_by_one, 60),
+                 modes = point(test::uniform_shaft(segments), {}, Joining::modes, 60);
     fmt::print("{:>61} {:8.2f} {:8.2f}\n", 8 * (segments + 1), dense, modes);
   }
   fmt::print("\nsteps in time, ms{:>44} {:>8} {:>8}\n", "states", "dense", "MUMPS");
   for (const int segments : {4, 8, 12, 16, 20, 26, 32}) {
-    const auto [dense, sparse] = step(shaft(segments));
+    const auto [dense, sparse] = step(test::uniform_shaft(segments));
     fmt::print("{:>61} {:8.3f} {:8.3f}\n", 8 * (segments + 1), dense, sparse);
   }
   return 0;

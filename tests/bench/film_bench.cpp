@@ -5,9 +5,9 @@
 
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "bench/pad.hpp"
 #include "film/algebra/band_lu.hpp"
 #include "film/algebra/film_matrix.hpp"
 #include "film/use/condensed.hpp"
@@ -22,22 +22,12 @@ void dgbtrf_(const int* m, const int* n, const int* kl, const int* ku, double* a
 
 namespace {
 
+using namespace whirl;
 using namespace whirl::film;
 
-constexpr int kAround = 60, kAlong = 16, kSize = (kAround - 1) * (kAlong - 1), kBand = kAlong - 1;
+using bench::heated, bench::kAlong, bench::kAround, bench::loaded, bench::one_pad;
 
-Geometry one_pad() {
-  return {Geometry::Bore::partial_arc, 0.2, 0.36, 0.0004, 160.0 * std::numbers::pi / 180.0, 0.5, 0.0};
-}
-
-// Half of the pad is cavitated: a rupture line crosses the cells.
-JournalMotion loaded(bool tilted) {
-  JournalMotion m;
-  m.position = {0.9 * 0.0004, -0.4 * 0.0004, tilted ? 1e-4 : 0.0, tilted ? -1e-4 : 0.0};
-  m.velocity = {0.05 * 0.0004 * 377.0, -0.08 * 0.0004 * 377.0, 0.0, 0.0};
-  m.speed = 377.0;
-  return m;
-}
+constexpr int kSize = (kAround - 1) * (kAlong - 1), kBand = kAlong - 1;
 
 // The five-point operator of a film with h^3 varying by a factor of 30 around the pad, lower band storage.
 std::vector<double> pressure_matrix(int rows_above, int stride) {
@@ -156,22 +146,10 @@ void evaluate_states(benchmark::State& state, testing::Elastic options, Need nee
   }
 }
 
-// A pad with heat, its temperatures condensed.
-Thd heated(int layers) {
-  Thd o;
-  o.cells = {kAround, kAlong};
-  o.layers = layers;
-  o.feed = 323.15;
-  o.viscosity = whirl::thermal::ViscosityOptions{whirl::thermal::Walther{{46e-6, 6.8e-6}, {313.15, 373.15}, 850.0}};
-  return o;
-}
-
 // Seconds of one linear solve of all equations of that film, pressure and energy: derivatives, factors, one right-hand
 // side.
 double linear_solve_time(int layers) {
-  Thd o = heated(layers);
-  o.states = States::dynamic;
-  auto film = make_film(one_pad(), o, {0.0067, 850.0});
+  auto film = make_film(one_pad(), heated(layers, States::dynamic), {0.0067, 850.0});
   const JournalMotion m = loaded(false);
   std::vector<double> states(film->states()), rates(film->states(), 0.0);
   film->unloaded(m, states);
@@ -198,13 +176,7 @@ double linear_solve_time(int layers) {
 // at the points of a cycle; against one linear solve of the pad in the same run.
 void heated_orbit(benchmark::State& state) {
   const auto layers = static_cast<int>(state.range(0)), points = static_cast<int>(state.range(1));
-  Condensed film(make_film(one_pad(),
-                           [&] {
-                             Thd o = heated(layers);
-                             o.states = States::dynamic;
-                             return o;
-                           }(),
-                           {0.0067, 850.0}));
+  Condensed film(make_film(one_pad(), heated(layers, States::dynamic), {0.0067, 850.0}));
   StateResponse r;
   JournalMotion m = loaded(false);
   const JournalMotion middle = m;
