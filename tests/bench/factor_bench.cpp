@@ -252,7 +252,7 @@ void dense() {
 }
 
 // Calls solve::Pencil for `columns` right-hand sides, the same at all lambda.
-Way pencil(const Sparse& l1, const Sparse& l0, const ArrayXcd& lambda, const MatrixXd& b) {
+Way pencil(const problem::ThinBlocks& k, const ArrayXcd& lambda, const MatrixXd& b) {
   struct State {
     solve::Pencil pencil;
     MatrixXd x;
@@ -261,15 +261,16 @@ Way pencil(const Sparse& l1, const Sparse& l0, const ArrayXcd& lambda, const Mat
   const Index lanes = lambda.size(), columns = b.cols(), count = lanes * columns;
   MatrixXd all = MatrixXd::Zero(2 * count, b.rows());
   for (Index q = 0; q < columns; ++q) all.middleRows(q * lanes, lanes) = b.col(q).transpose().replicate(lanes, 1);
-  return {"Pencil", [=] { s->pencil.compute(l1, l0, lambda); }, [=] { s->x = all, s->pencil.solve(s->x, columns); },
+  return {"Pencil", [=] { s->pencil.compute(k.l1, k.l0, k.kinematic, lambda); },
+          [=] { s->x = all, s->pencil.solve(s->x, columns); },
           [=] {
             double most = 0;
-            for (Index k = 0; k < lanes; ++k)
+            for (Index j = 0; j < lanes; ++j)
               for (Index q = 0; q < columns; ++q) {
-                const Eigen::MatrixXcd x = (s->x.row(q * lanes + k) + Complex(0, 1) * s->x.row(count + q * lanes + k))
+                const Eigen::MatrixXcd x = (s->x.row(q * lanes + j) + Complex(0, 1) * s->x.row(count + q * lanes + j))
                                                .transpose(),
                                        y = b.col(q).cast<Complex>();
-                const Eigen::SparseMatrix<Complex> t = l0.cast<Complex>() + lambda(k) * l1.cast<Complex>();
+                const Eigen::SparseMatrix<Complex> t = k.l0.cast<Complex>() + lambda(j) * k.l1.cast<Complex>();
                 most = std::max(most, left(t, x, y));
               }
             return most;
@@ -289,21 +290,21 @@ Sparse real_form(const Eigen::SparseMatrix<Complex>& a) {
   return made_of(2 * a.rows(), entries);
 }
 
-void pencils(const std::string& what, const Sparse& l1, const Sparse& l0, const ArrayXcd& lambda, Index columns) {
-  const Index n = l1.rows();
+void pencils(const std::string& what, const problem::ThinBlocks& k, const ArrayXcd& lambda, Index columns) {
+  const Index n = k.l1.rows();
   const MatrixXd b = sides(n, columns);
   MatrixXd twice = MatrixXd::Zero(2 * n, columns);
   for (Index i = 0; i < n; ++i) twice.row(2 * i) = b.row(i);
   std::vector<Way> eigen, by_klu, by_mumps;
   for (const Complex& l : lambda) {
-    const Eigen::SparseMatrix<Complex> t = l0.cast<Complex>() + l * l1.cast<Complex>();
+    const Eigen::SparseMatrix<Complex> t = k.l0.cast<Complex>() + l * k.l1.cast<Complex>();
     const Sparse real = real_form(t);
     eigen.push_back(pivoted(t, b));
     by_klu.push_back(klu(real, twice));
     by_mumps.push_back(mumps(real, twice));
   }
   compare(fmt::format("Pencil, {}, {} shifts", what, lambda.size()), n, columns,
-          {pencil(l1, l0, lambda, b), all_of(eigen), all_of(by_klu), all_of(by_mumps)});
+          {pencil(k, lambda, b), all_of(eigen), all_of(by_klu), all_of(by_mumps)});
 }
 
 // A cycle of 60 intervals by time modes; one interval of degree 4; and a step in time of a hundredth of a turn.
@@ -311,22 +312,22 @@ void machine(const std::string& what, const system::Train& train, bool sparse) {
   constexpr double speed = 377, period = 2 * M_PI / speed;
   system::RotorSystem s(PETSC_COMM_SELF, train, speed);
   problem::ScaledPoint point(s, s.structure(), true);
-  const problem::ThinBlocks& k = point.thin_blocks();
+  problem::ThinBlocks k = point.thin_blocks();
   problem::Films films;
   const std::vector<double> x = s.gather(system::static_guess(s).get());
   const VectorXd inputs = s.structure()->c() * Eigen::Map<const VectorXd>(x.data(), s.size());
   s.structure()->films(inputs, nullptr, nullptr, true, films);
-  const Sparse held = k.l0 - Sparse(k.b * Sparse(films.d_inputs.sparseView()) * k.c);
-  const Sparse step = k.l1 + period / 100 * held;
+  k.l0 = Sparse(k.l0 - Sparse(k.b * Sparse(films.d_inputs.sparseView()) * k.c));
+  const Sparse step = k.l1 + period / 100 * k.l0;
   const MatrixXd loads = sides(step.rows(), k.b.cols() + 1);
   std::vector<Way> ways = {pivoted(step, loads), klu(step, loads), mumps(step, loads)};
   if (!sparse) ways.insert(ways.begin(), dense_lu(MatrixXd(step), loads));
   compare("L1 + tau L0 of " + what, step.rows(), loads.cols(), ways);
   if (!sparse) return;
   const auto cycle = solve::cycle_modes(solve::make_scheme(2, solve::Points::radau), solve::uniform_mesh(60), 1);
-  pencils(what, k.l1, held, cycle.lambda / period, 5);
+  pencils(what, k, cycle.lambda / period, 5);
   const auto interval = solve::interval_modes(solve::make_scheme(4, solve::Points::radau), period / 60);
-  pencils(what, k.l1, held, interval.lambda, 4 * k.b.cols());
+  pencils(what, k, interval.lambda, 4 * k.b.cols());
 }
 
 }  // namespace
