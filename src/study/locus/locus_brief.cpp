@@ -85,10 +85,8 @@ io::Brief Locus::brief(const StudyResult& result, std::span<const io::StudySumma
   if (limit)
     brief.sentences.push_back(fmt::format("Where it was begun, the {} is larger at {} {}.", words_of(*options.limit),
                                           group.text("larger_side") == "below" ? "lower" : "higher", one));
-  io::BriefTable table{"Ends and extremes of the curve",
-                       {{"where"}, {one, first->unit}, {two, over->unit}, {"beside"}},
-                       {},
-                       "bar: of one parameter with the other one fixed, from other meshes"};
+  io::BriefTable table{
+      "Ends and extremes of the curve", {{"where"}, {one, first->unit}, {two, over->unit}, {"beside"}}, {}, {}};
   const auto row = [](const auto& values, const auto& at) { return static_cast<std::size_t>(at - values.begin()); };
   std::vector<std::pair<std::size_t, std::string>> shown;
   const auto add = [&](std::size_t k, const std::string& where) {
@@ -109,8 +107,10 @@ io::Brief Locus::brief(const StudyResult& result, std::span<const io::StudySumma
                           !others || others->values[k] == 0 ? ""
                           : limit                           ? "the cycle is unstable"
                                                             : "something else is unstable"});
-  io::BriefTable special{
-      "Special points of the curve", {{"what"}, {one, first->unit}, {two, over->unit}, {"curve"}}, {}, {}};
+  io::BriefTable special{"Special points of the curve",
+                         {{"what"}, {one, first->unit}, {two, over->unit}, {"curve"}},
+                         {},
+                         "bar: of one parameter with the other one fixed, from other meshes"};
   for (const io::CodimensionTwo& c : result.summary.codimension_two) {
     io::Quantity here = c.value, there = c.second_value;
     if (const auto bar = c.more.find("value_uncertainty"); bar != c.more.end()) here.more["uncertainty"] = bar->second;
