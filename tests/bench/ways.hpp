@@ -213,7 +213,7 @@ Way pivoted(const Eigen::SparseMatrix<Scalar>& a, const MatrixXd& b) {
   lu->analyse(a);
   const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> columns = b.cast<Scalar>();
   return by(
-      "PivotedLu (Eigen)", lu, a, columns, [](auto& l, const auto& m) { (void)l.factorise(m); },
+      "PivotedLu (KLU)", lu, a, columns, [](auto& l, const auto& m) { (void)l.factorise(m); },
       [](const auto& l, const auto& y) { return l.solve(y); });
 }
 inline Way sparse_lu(const Sparse& a, const MatrixXd& b) {

@@ -1,5 +1,5 @@
 #pragma once
-// LU of sparse matrices with pivots, compiled once: Eigen's takes seconds of compiling in each file.
+// LU of sparse matrices with pivots, by KLU.
 
 #include <Eigen/SparseCore>
 #include <complex>
@@ -9,8 +9,9 @@
 
 namespace whirl::core {
 
-/// Rows are exchanged for the largest pivot, columns ordered for few entries (Eigen::SparseLU with COLAMD). Scalar:
-/// double or std::complex<double>. `SparseLu` is faster for films, whose matrices are real.
+/// KLU of SuiteSparse (Davis and Palamadai Natarajan 2010): blocks of a triangular form, columns ordered for few entries
+/// (AMD), rows scaled and exchanged for a pivot of a tenth of the largest at least, the diagonal first. Scalar: double or
+/// std::complex<double>. `SparseLu` is faster for films, whose matrices are real.
 template <class Scalar>
 class PivotedLu {
 public:

@@ -17,7 +17,7 @@ namespace whirl::solve {
 ///     z_v = (r_i - lambda b z_q)/a
 ///
 /// A system of second order in state form so keeps its coordinates only; one without such rows is solved as it is.
-/// Columns are ordered (COLAMD) and the factorisation is analysed anew only when the nonzeros, the rows to eliminate or
+/// Columns are ordered and the factorisation is analysed anew only when the nonzeros, the rows to eliminate or
 /// the places of blocks change.
 class FrequencyHub {
 public:
