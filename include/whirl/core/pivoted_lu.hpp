@@ -9,9 +9,9 @@
 
 namespace whirl::core {
 
-/// KLU of SuiteSparse (Davis and Palamadai Natarajan 2010): blocks of a triangular form, columns ordered for few entries
-/// (AMD), rows scaled and exchanged for a pivot of a tenth of the largest at least, the diagonal first. Scalar: double or
-/// std::complex<double>. `SparseLu` is faster for films, whose matrices are real.
+/// KLU of SuiteSparse (Davis and Palamadai Natarajan 2010): blocks of a triangular form, columns ordered for few
+/// entries (AMD), rows scaled and exchanged for a pivot of a tenth of the largest at least, the diagonal first. Scalar:
+/// double or std::complex<double>. `SparseLu` is faster for films, whose matrices are real.
 template <class Scalar>
 class PivotedLu {
 public:
