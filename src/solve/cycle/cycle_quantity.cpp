@@ -23,7 +23,7 @@ struct Piece {
 
   [[nodiscard]] Vector2d place(double t) const { return nodes * lagrange(scheme, t); }
   [[nodiscard]] double value(double t) const { return height(place(t), direction); }
-  // Of |p| that of |p|^2/2, which has the same sign.
+  // For |p| the slope of |p|^2/2: it has the same sign.
   [[nodiscard]] double slope(double t) const {
     const Vector2d rate = nodes * lagrange_slope(scheme, t);
     return (direction.isZero() ? place(t) : direction).dot(rate);

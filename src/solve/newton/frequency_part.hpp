@@ -11,7 +11,7 @@ namespace whirl::solve {
 
 struct FrequencyResolvent::Coupled {
   PetscInt first = 0, count = 0;       // its local rows,
-  PetscInt row = 0;                    // the first of them among those of all parts here
+  PetscInt row = 0;                    // the first one among the rows of all parts here
   std::vector<Eigen::Index> seen, of;  // columns of the blocks that hold G_i and F_i^T
   core::Matrix a, b;                   // A_i = a + lambda b where it is wanted as a matrix
   Eigen::MatrixXcd x, dx;              // A_i^-1 G_i where it was evaluated last, with the border, and its derivative

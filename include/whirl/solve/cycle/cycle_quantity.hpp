@@ -15,8 +15,8 @@ struct CyclePeak {
   Eigen::Matrix2Xd by_nodes;   ///< its derivative by the path at the nodes [2 x N m]
 };
 
-/// The maximum of the intervals' own polynomials, not of samples. The time moves with the path, but d(value)/d(time) =
-/// 0: the derivative is that of the value at a fixed time. Of equal peaks the first counts.
+/// The maximum of the intervals' own polynomials, not of samples. At a maximum the value does not change with the time,
+/// so its derivative is that at a fixed time. Of equal peaks the first counts.
 [[nodiscard]] CyclePeak peak_of(const Scheme& scheme, const Cycle& path, const Eigen::Vector2d& direction);
 /// Whether the value falls by more than `depth` on the shorter way from the time `before` to the peak: where the peak
 /// stood at `before` on a neighbouring cycle, another one has become the largest since.

@@ -152,7 +152,7 @@ private:
   problem::Entries entries_;
   core::Matrix jacobian_;                        // of a system that lists no entries
   std::unique_ptr<PortMatrix> at_rest_, rates_;  // a and b, scaled
-  std::vector<std::size_t> hub_places_;          // of the hub's entries here among those of all ranks
+  std::vector<std::size_t> hub_places_;          // places of this rank's hub entries in a and b
   std::vector<std::unique_ptr<Coupled>> parts_;
   std::vector<Ports> ports_;
   std::vector<PetscInt> hub_numbers_;  // of the hub's states among all
