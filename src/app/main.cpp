@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -163,11 +164,21 @@ core::Exit dispatch(CommandLine line, bool prints) {
   return exit;
 }
 
+// What explains the program needs neither ranks nor solvers, whose libraries take longer to start than it takes.
+bool only_explains(const CommandLine& line) {
+  static constexpr std::array words{"list", "describe", "schema", "help", "--help", "-h", "--version"};
+  return !core::Session::launched() && line.petsc.empty() && !line.words.empty() &&
+         std::ranges::find(words, line.words.back()) != words.end();
+}
+
 // An error that all ranks have leaves in order; one that only this rank has would leave the others waiting.
 int leave(const std::string& text, core::Exit exit, bool agreed, bool prints) {
-  int size = 1, rank = 0;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  int started = 0, size = 1, rank = 0;
+  MPI_Initialized(&started);
+  if (started != 0) {
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  }
   const bool alone = size > 1 && !agreed;
   if (prints || alone) {
     (void)std::fflush(stdout);
@@ -184,8 +195,9 @@ int leave(const std::string& text, core::Exit exit, bool agreed, bool prints) {
 int main(int argc, char** argv) {
   CommandLine line = split(argc, argv);
   std::optional<core::Session> session;
+  const bool explains = only_explains(line);
   try {
-    session.emplace(argc, argv);
+    if (!explains) session.emplace(argc, argv);
   } catch (const std::exception& e) {  // every rank reads the same files and environment
     (void)std::fprintf(stderr, "whirl: %s\n", e.what());
     (void)std::fflush(nullptr);
@@ -193,10 +205,10 @@ int main(int argc, char** argv) {
     std::_Exit(static_cast<int>(core::Exit::failure));
   }
   int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (!explains) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   const bool prints = rank == 0;
   try {
-    core::Session::set_options(line.petsc);
+    if (!explains) core::Session::set_options(line.petsc);
     return static_cast<int>(dispatch(std::move(line), prints));
   } catch (const core::Error& e) {
     return leave(e.what(), e.exit(), e.agreed(), prints);

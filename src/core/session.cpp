@@ -106,12 +106,18 @@ void Session::one_blas_thread() {
     }
 }
 
+bool Session::launched() {
+  return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"},
+                             [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
 // A rank that polls for messages keeps its core from the rank that it waits for: where ranks outnumber idle cores that
 // is the difference between seconds and minutes. A rank alone waits for nobody, and would give its core away at every
-// poll.
-void Session::yield_to_other_ranks() {
+// poll. The daemon would start processes for MPI_Comm_spawn, which nobody calls, and takes 0.2 s.
+void Session::prepare_mpi() {
   const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
   if (size && std::atoi(size) > 1) (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
+  if (!launched()) (void)::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
 }
 
 namespace {
@@ -134,7 +140,7 @@ void claim_blas_buffer() {
 
 Session::Session(int argc, char** argv) {
   one_blas_thread();
-  yield_to_other_ranks();
+  prepare_mpi();
   claim_blas_buffer();
   // PETSc would read `.petscrc` and `petscrc` of the working folder, too.
   std::string program = argc > 0 ? argv[0] : "whirl", skip = no_files;

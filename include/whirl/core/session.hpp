@@ -30,9 +30,13 @@ public:
   /// The constructor does it; nothing happens if the library has no such switch.
   static void one_blas_thread();
 
-  /// Ranks that wait give their cores away, unless the environment decides (OMPI_MCA_mpi_yield_when_idle): set before
-  /// MPI starts, for two ranks and more under Open MPI's mpirun. The constructor does it.
-  static void yield_to_other_ranks();
+  /// Whether a launcher of ranks, such as mpirun, has started this process.
+  [[nodiscard]] static bool launched();
+
+  /// Tells Open MPI, before it starts, that ranks that wait give their cores away, and that a process without a
+  /// launcher needs no daemon. The environment has the last word (OMPI_MCA_mpi_yield_when_idle,
+  /// OMPI_MCA_ess_singleton_isolated). The constructor does it.
+  static void prepare_mpi();
 
   /// Puts words of the command line into PETSc's option database ("-newton_snes_monitor", ...), over what other sources
   /// gave. core::InputError (agreed) for a word that is neither the name of an option nor the value of the one before.
