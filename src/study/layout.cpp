@@ -119,7 +119,8 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   out.world = context.comm;
   out.large = !reason.empty();
   out.spread = sharing == Sharing::cycles;
-  const bool in_time = sharing == Sharing::intervals, whole = in_time || sharing == Sharing::nothing;  // on every rank
+  const bool in_time = sharing == Sharing::intervals;
+  const bool whole = in_time || sharing == Sharing::nothing || sharing == Sharing::films;  // on every rank
   out.shared = out.large && !whole;
   int groups = 1;
   if (out.shared) {
@@ -142,8 +143,11 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
                                     size / groups, reason)
            : out.space != MPI_COMM_SELF ? fmt::format("one machine on {} ranks ({})", size, reason)
            : sharing == Sharing::speeds ? fmt::format("speeds shared by {} ranks, a machine on each", size)
-           : share_time                 ? fmt::format("intervals shared by {} ranks, a machine on each", size)
-                                        : fmt::format("{} ranks compute the same", size);
+           : sharing == Sharing::meshes
+               ? fmt::format("meshes of error bars shared by {} ranks, a machine on each", size)
+           : sharing == Sharing::films ? fmt::format("points and meshes shared by {} ranks, a film on each", size)
+           : share_time                ? fmt::format("intervals shared by {} ranks, a machine on each", size)
+                                       : fmt::format("{} ranks compute the same", size);
   return out;
 }
 
@@ -229,6 +233,15 @@ Answers distribute_rows(const Layout& layout, std::size_t n, const Work& answer,
   }
   for (auto& both : all) both.erase(both.cbegin(), split(both));
   return all;
+}
+
+Answers distribute_numbers(const Layout& layout, std::size_t n, const Work& work, Pieces& kept,
+                           const std::string& name) {
+  if (layout.count > 1) return distribute(layout, n, work, kept, name, no_trail);
+  Answers out;
+  for (std::size_t k = 0; k < n; ++k)
+    out.push_back(kept.numbers(fmt::format("{} {}", name, k + 1), [&] { return work(k); }));
+  return out;
 }
 
 }  // namespace whirl::study

@@ -10,17 +10,19 @@
 #include <vector>
 
 #include "study/packed.hpp"
+#include "study/pieces.hpp"
 #include "whirl/system/options.hpp"
 
 namespace whirl::study {
 
-class Pieces;
 struct Context;
 struct LayoutOptions;
 
 /// How an analysis can be shared.
 enum class Sharing {
-  machine,    ///< one state after another: branches of equilibria, motions in time, Newton-Picard's cycles
+  machine,    ///< one state after another: motions in time, Newton-Picard's cycles
+  meshes,     ///< the same of equilibria and their branches, which other meshes of their error bars do not wait for
+  films,      ///< independent problems of one film of the machine
   speeds,     ///< independent problems of one machine: modes, responses
   intervals,  ///< pieces of a cycle in time, each of which needs the whole machine on its rank
   cycles,     ///< the states at all points of time: cycles by collocation where spreads_cycles() says so
@@ -83,6 +85,24 @@ template <class Work>
   std::vector<Answer> out;
   for (const auto& each : distribute_rows(layout, n, row, kept, name, trail)) out.push_back(unpack<Answer>(each));
   return out;
+}
+
+/// Rows work(0), ..., work(n - 1) that start anew, each a piece `name 1`, ...; where one rank does all, what the work
+/// itself keeps goes with its piece.
+[[nodiscard]] std::vector<std::vector<double>> distribute_numbers(
+    const Layout& layout, std::size_t n, const std::function<std::vector<double>(std::size_t)>& work, Pieces& kept,
+    const std::string& name);
+/// The same with work(own, k) that keeps pieces of itself: in the checkpoint where one rank does all, else until it has
+/// ended. Items start anew.
+template <class Work>
+[[nodiscard]] auto distribute_pieces(const Context& context, const Layout& layout, std::size_t n, const Work& work,
+                                     Pieces& kept, const std::string& name) {
+  const auto row = [&](std::size_t item) {
+    if (layout.count == 1) return work(kept, item);
+    Pieces unsaved(context.results, false, false);
+    return work(unsaved, item);
+  };
+  return distribute(layout, n, row, kept, name, no_trail);
 }
 
 }  // namespace whirl::study

@@ -48,16 +48,21 @@ SummaryBars::SummaryBars(io::StudySummary& summary, MeshLaw law) : summary_(summ
   bars_ = Bars(values_, law);
 }
 
-void SummaryBars::add(Axis axis, double spacing, const io::StudySummary& there) {
+std::vector<double> SummaryBars::row(const io::StudySummary& there) const {
   std::map<std::string, double> known;
   for (const auto& [name, q] : there.values) known[name] = q.value;
   std::vector<double> values;
-  for (std::size_t k = 0; k < names_.size(); ++k) {
-    const auto at = known.find(names_[k]);
+  for (const std::string& name : names_) {
+    const auto at = known.find(name);
     values.push_back(at == known.end() ? io::no_value : at->second);
-    if (values.back() != values_[k]) moved_[k] = true;
   }
-  bars_.add(axis, spacing, values);
+  return values;
+}
+
+void SummaryBars::add(Axis axis, double spacing, const std::vector<double>& row) {
+  for (std::size_t k = 0; k < row.size(); ++k)
+    if (row[k] != values_[k]) moved_[k] = true;
+  bars_.add(axis, spacing, row);
   with_time_ |= axis == Axis::time;
   any_ = true;
 }
@@ -66,6 +71,17 @@ void SummaryBars::add(Axis axis, double spacing, const std::function<void(io::St
   io::StudySummary there;
   if (!has_answer([&] { compute(there); })) there = {};
   add(axis, spacing, there);
+}
+
+void SummaryBars::add(const Layout& layout, Pieces& pieces, const std::vector<FilmMesh>& meshes,
+                      const std::function<void(const FilmMesh&, io::StudySummary&)>& compute) {
+  const auto on = [&](std::size_t i) {
+    io::StudySummary there;
+    if (!has_answer([&] { compute(meshes[i], there); })) there = {};
+    return row(there);
+  };
+  const auto rows = distribute(layout, meshes.size(), on, pieces, "other mesh", no_trail);
+  for (std::size_t i = 0; i < meshes.size(); ++i) add(meshes[i].axis, meshes[i].spacing, rows[i]);
 }
 
 void SummaryBars::write(const Location& location) {

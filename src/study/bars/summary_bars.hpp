@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "study/bars/error_bar.hpp"
+#include "study/bars/film_mesh.hpp"
+#include "study/layout.hpp"
 #include "whirl/io/summary.hpp"
 
 namespace whirl::study {
@@ -19,9 +21,15 @@ public:
   /// deck gives and nondimensional groups depend on no mesh, also where another mesh gave nothing.
   SummaryBars(io::StudySummary& summary, MeshLaw law);
   /// Values of the same names on another mesh; those that are missing there are unknown there.
-  void add(Axis axis, double spacing, const io::StudySummary& there);
+  void add(Axis axis, double spacing, const io::StudySummary& there) { add(axis, spacing, row(there)); }
   /// The same with what `compute` puts there; nothing if that mesh has no answer.
   void add(Axis axis, double spacing, const std::function<void(io::StudySummary& there)>& compute);
+  /// The same on several meshes, shared between the ranks: `compute` is collective on layout.space. Collective.
+  void add(const Layout& layout, Pieces& pieces, const std::vector<FilmMesh>& meshes,
+           const std::function<void(const FilmMesh& mesh, io::StudySummary& there)>& compute);
+  /// What `there` has of these values, in their order, not numbers where it has none; and the same as a row of them.
+  [[nodiscard]] std::vector<double> row(const io::StudySummary& there) const;
+  void add(Axis axis, double spacing, const std::vector<double>& row);
   /// Writes the bars. Components of one vector or matrix (names that differ in a last x, y, xx, ...) err together: each
   /// bar is at least a quarter of the largest of its kin, so that a difference that vanishes by chance hides nothing.
   /// `location` is what an iteration leaves of the value with this name.

@@ -15,7 +15,6 @@
 #include "study/bearing/bearing_mapper.hpp"
 #include "study/columns.hpp"
 #include "study/common.hpp"
-#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/contract/elastic.hpp"
 #include "whirl/film/contract/options.hpp"
@@ -108,8 +107,7 @@ void put_limit(io::StudySummary& summary, const Mapper& map) {
 }
 
 // Whether the same film goes on beyond the limit with upwind differences, which make no waves of the mesh. Collective.
-bool goes_on_upwind(const Context& context, Pieces& pieces, BearingMapOptions options, const system::Support& support,
-                    const MapLimit& limit) {
+bool goes_on_upwind(Pieces& pieces, BearingMapOptions options, const system::Support& support, const MapLimit& limit) {
   const auto* compliant = film::find<film::Compliant>(support.film);
   if (!compliant || compliant->differences == film::Compliant::Differences::upwind) return false;
   system::Support other = support;
@@ -122,7 +120,7 @@ bool goes_on_upwind(const Context& context, Pieces& pieces, BearingMapOptions op
   options.max_eccentricity = std::min(options.max_eccentricity, 1.1 * limit.eccentricity);
   options.points = 1;
   return has_answer([&] {
-    Mapper upwind(context, pieces, "upwind ", options, other);
+    Mapper upwind(pieces, "upwind ", options, other);
     upwind.follow();
     if (upwind.limit || upwind.locus.empty()) throw core::NotConverged("it ends as well");
   });
@@ -173,28 +171,30 @@ void put_bars(const Context& context, Pieces& pieces, const BearingMapOptions& o
   Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine, context.layout));
   SummaryBars of_summary(summary, law_of(context.machine, context.layout));
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
-  int number = 0;
-  for (const FilmMesh& mesh : meshes) {
-    std::vector<double> numbers;
+  // Numbers of the locus, and those of the summary.
+  const auto on = [&](Pieces& own, std::size_t m) {
+    std::pair<std::vector<double>, std::vector<double>> out;
     io::StudySummary there;
-    const std::string head = fmt::format("mesh {} ", ++number);
     const bool answered = has_answer([&] {
-      system::Support support;
-      core::agree(context.comm,
-                  [&] { support = with_film_mesh(system::train_of(context.machine), mesh.factor).supports[which]; });
-      Mapper other(context, pieces, head, options, support);
+      Mapper other(own, fmt::format("on mesh {} ", m + 1), options,
+                   with_film_mesh(system::train_of(context.machine), meshes[m].factor).supports[which]);
       other.follow();
       other.find_threshold(groups);
       other.load();
-      numbers = numbers_of(other.locus, map.locus);
+      out.first = numbers_of(other.locus, map.locus);
       io::Group unused;
       put_loaded(unused, there, other.loaded);
       put_threshold(there, other, groups);
       put_limit(there, other);
     });
-    if (!answered) numbers.clear();
-    bars.add(mesh.axis, mesh.spacing, numbers);
-    of_summary.add(mesh.axis, mesh.spacing, there);
+    if (!answered) out.first.clear();
+    out.second = of_summary.row(there);
+    return out;
+  };
+  const auto on_meshes = distribute_pieces(context, plan(context, Sharing::films), meshes.size(), on, pieces, "mesh");
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    bars.add(meshes[m].axis, meshes[m].spacing, on_meshes[m].first);
+    of_summary.add(meshes[m].axis, meshes[m].spacing, on_meshes[m].second);
   }
   of_summary.write(1e-9);
   if (meshes.empty()) return;
@@ -224,7 +224,7 @@ StudyResult BearingMap::run(Context& context) {
   put_groups(summary, train);
 
   Pieces pieces(results, context.resume);
-  Mapper map(context, pieces, "", options, train.supports[which]);
+  Mapper map(pieces, "", options, train.supports[which]);
   map.follow();
   map.find_threshold(groups);
   map.load();
@@ -255,7 +255,7 @@ StudyResult BearingMap::run(Context& context) {
     if (e > map.locus.front().at.eccentricity && e < end) gaps += fmt::format("{}{:.4g}", gaps.empty() ? "" : ", ", e);
   if (!gaps.empty()) summary.warnings.push_back("no film was found at the eccentricities " + gaps);
   if (map.folds.size() > 1) summary.warnings.push_back(of_folds(map.folds));
-  if (map.limit && goes_on_upwind(context, pieces, options, train.supports[which], *map.limit))
+  if (map.limit && goes_on_upwind(pieces, options, train.supports[which], *map.limit))
     summary.warnings.push_back(
         "with 'differences: upwind' the locus goes on beyond its end: waves of the mesh end it, not the bearing");
   return results.finish(map.limit ? in_words(*map.limit) : "completed", true);

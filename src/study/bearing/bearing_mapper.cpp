@@ -7,19 +7,13 @@
 #include <numbers>
 #include <utility>
 
-#include "whirl/core/agree.hpp"
-
 namespace whirl::study {
-Mapper::Mapper(const Context& context, Pieces& pieces, std::string head, const BearingMapOptions& options,
-               const system::Support& support)
-    : comm_(context.comm), pieces_(pieces), head_(std::move(head)), options_(options) {
-  core::agree(comm_, [&] { bearing_.emplace(support, options_.speed.value); });
-}
+Mapper::Mapper(Pieces& pieces, std::string head, const BearingMapOptions& options, const system::Support& support)
+    : pieces_(pieces), head_(std::move(head)), options_(options), bearing_(support, options.speed.value) {}
 
 void Mapper::follow() {
-  BearingEquilibrium last;
-  core::agree(comm_, [&] { last = bearing_->centred(); });
-  if (!bearing_->rigid()) follow_curve(last);
+  BearingEquilibrium last = bearing_.centred();
+  if (!bearing_.rigid()) follow_curve(last);
   for (int i = 1; i <= options_.points; ++i) {
     const double wanted = options_.max_eccentricity * i / options_.points;
     const auto point = piece(fmt::format("point {}", i), [&]() -> std::optional<MapPoint> {
@@ -58,7 +52,7 @@ void Mapper::load() {
         fmt::format("load {:.17g}", s),
         [&] {
           auto there = find([s](const BearingEquilibrium& e) { return e.sommerfeld - s; });
-          if (there) profile = bearing_->profile();
+          if (there) profile = bearing_.profile();
           return there;
         },
         &profile);
@@ -70,7 +64,7 @@ void Mapper::load() {
 }
 
 void Mapper::find_threshold(const std::optional<system::DimensionlessGroups>& groups) {
-  if (!groups || !bearing_->rigid()) return;
+  if (!groups || !bearing_.rigid()) return;
   const auto found = piece("threshold", [&] {
     return find([&](const BearingEquilibrium& e) {
       return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
@@ -80,7 +74,7 @@ void Mapper::find_threshold(const std::optional<system::DimensionlessGroups>& gr
 }
 
 void Mapper::squeeze() {
-  if (!bearing_->rigid()) return;
+  if (!bearing_.rigid()) return;
   // W grows like powers of 1/(1 - e): its logarithm is all but linear in log(1 - e).
   const int last = options_.grid - 1;
   for (int i = 0; i <= last; ++i)
@@ -90,12 +84,10 @@ void Mapper::squeeze() {
     const double e = radii[r];
     const std::vector<double> row = pieces_.numbers(fmt::format("{}impedance {}", head_, r), [&] {
       std::vector<double> out;
-      core::agree(comm_, [&] {
-        for (const double phi : angles) {
-          const auto w = bearing_->impedance(e * std::cos(phi), e * std::sin(phi));
-          out.insert(out.end(), w.begin(), w.end());
-        }
-      });
+      for (const double phi : angles) {
+        const auto w = bearing_.impedance(e * std::cos(phi), e * std::sin(phi));
+        out.insert(out.end(), w.begin(), w.end());
+      }
       return out;
     });
     for (std::size_t k = 0; k + 1 < row.size(); k += 2) {
@@ -107,15 +99,12 @@ void Mapper::squeeze() {
 
 void Mapper::follow_curve(const BearingEquilibrium& centred) {
   constexpr int starts = 64;
-  curve_.emplace(bearing_->locus());
+  curve_.emplace(bearing_.locus());
   const std::vector<double> kept = pieces_.numbers(head_ + "curve", [&] {
-    core::agree(comm_, [&] {
-      for (int i = 1; i <= starts && curve_->nodes.empty(); ++i)
-        if (const auto e = bearing_->carrying(options_.max_eccentricity * i / starts, centred))
-          curve_->follow(
-              {e->states, {e->eccentricity * std::sin(e->attitude), -e->eccentricity * std::cos(e->attitude)}},
-              options_.max_eccentricity);
-    });
+    for (int i = 1; i <= starts && curve_->nodes.empty(); ++i)
+      if (const auto e = bearing_.carrying(options_.max_eccentricity * i / starts, centred))
+        curve_->follow({e->states, {e->eccentricity * std::sin(e->attitude), -e->eccentricity * std::cos(e->attitude)}},
+                       options_.max_eccentricity);
     return pack(*curve_);
   });
   unpack(kept, *curve_);
@@ -127,9 +116,9 @@ void Mapper::follow_curve(const BearingEquilibrium& centred) {
 
 std::optional<BearingEquilibrium> Mapper::reach(const BearingEquilibrium& near, double wanted) {
   const bool on_curve = curve_ && !curve_->nodes.empty() && wanted >= curve_->nodes.front().eccentricity();
-  if (!on_curve) return bearing_->carrying(wanted, near);
+  if (!on_curve) return bearing_.carrying(wanted, near);
   const auto node = curve_->at(wanted);
-  return node ? bearing_->carrying(*node) : std::nullopt;
+  return node ? bearing_.carrying(*node) : std::nullopt;
 }
 
 void Mapper::refuse(double s) {
@@ -153,8 +142,8 @@ void Mapper::refuse(double s) {
 }
 
 MapPoint Mapper::complete(const BearingEquilibrium& e) {
-  MapPoint p{e, bearing_->thinnest(), {}};
-  for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_->coefficients(ratio));
+  MapPoint p{e, bearing_.thinnest(), {}};
+  for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_.coefficients(ratio));
   return p;
 }
 
@@ -162,7 +151,7 @@ std::optional<MapPoint> Mapper::piece(const std::string& name, const std::functi
                                       BearingProfile* profile) {
   auto [found, left] = pieces_.value(head_ + name, [&] {
     std::pair<std::optional<MapPoint>, BearingProfile> out;
-    core::agree(comm_, [&] { out.first = compute(); });
+    out.first = compute();
     if (profile && out.first) out.second = *profile;
     return out;
   });

@@ -38,14 +38,13 @@ struct LoadedPoint {
   BearingProfile profile;
 };
 
-/// What one rank computes, all alike; each point is a piece of the checkpoint, its name begins with `head`. Collective.
+/// What one rank computes by itself; each point is a piece of the checkpoint, its name begins with `head`.
 class Mapper {
 public:
-  Mapper(const Context& context, Pieces& pieces, std::string head, const BearingMapOptions& options,
-         const system::Support& support);
+  Mapper(Pieces& pieces, std::string head, const BearingMapOptions& options, const system::Support& support);
   /// Where no film is found the locus has a gap; some bores carry no vertical load at small eccentricities.
   void follow();
-  /// The first place on the locus where `margin` changes its sign; the bearing is left there. Not collective.
+  /// The first place on the locus where `margin` changes its sign; the bearing is left there.
   [[nodiscard]] std::optional<MapPoint> find(const std::function<double(const BearingEquilibrium&)>& margin);
   /// Refuses a load that the map does not reach, with the reason: the results would have no values for it.
   void load();
@@ -74,11 +73,10 @@ private:
                                               const std::function<std::optional<MapPoint>()>& compute,
                                               BearingProfile* profile = nullptr);
 
-  MPI_Comm comm_;
   Pieces& pieces_;
   std::string head_;
   const BearingMapOptions& options_;
-  std::optional<OneBearing> bearing_;
+  OneBearing bearing_;
   std::optional<JournalLocus> curve_;  // of a bearing that is not rigid
 };
 

@@ -108,20 +108,19 @@ std::string of_the_centre(const AtSpeed& at) {
       beside, near.stiffness[0][1], near.damping[0][0], c.stiffness[0][1], c.damping[0][0]);
 }
 
-AtSpeed at_speed(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed,
-                 const std::function<AtSpeed()>& compute) {
-  AtSpeed at = pieces.value(name, [&] {
+AtSpeed at_speed(Pieces& pieces, const std::string& name, double speed, const std::function<AtSpeed()>& compute) {
+  return pieces.value(name, [&] {
     AtSpeed out;
-    WithoutFilm none = agreed_film(comm, [&] { out = compute(); });
-    if (none.reason.empty()) return out;
-    out = {};
-    out.place.motion.position.fill(io::no_value);
-    out.reason = std::move(none.reason);
-    out.most = none.most;
+    WithoutFilm none = agreed_film(MPI_COMM_SELF, [&] { out = compute(); });
+    if (!none.reason.empty()) {
+      out = {};
+      out.place.motion.position.fill(io::no_value);
+      out.reason = std::move(none.reason);
+      out.most = none.most;
+    }
+    out.place.motion.speed = speed;
     return out;
   });
-  at.place.motion.speed = speed;
-  return at;
 }
 
 }  // namespace whirl::study

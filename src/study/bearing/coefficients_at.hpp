@@ -28,7 +28,7 @@ struct AtSpeed {
   /// As many coefficients that are not numbers.
   void fill(std::size_t ports, std::size_t frequencies, std::size_t amplitudes);
   void members(auto& archive) {
-    archive(place.motion.position, place.states, place.force, thickness);
+    archive(place.motion.position, place.motion.speed, place.states, place.force, thickness);
     archive(coefficients, enforced, centre, reason, most);
   }
 };
@@ -47,9 +47,8 @@ void members(auto& archive, film::PortCoefficients& c) {
 /// What is to be said where a film has `centre`.
 [[nodiscard]] std::string of_the_centre(const AtSpeed& at);
 
-/// The piece of that name: what `compute` returns, which must not communicate, or why it does not. All ranks compute
-/// alike, and get the same. Collective.
-[[nodiscard]] AtSpeed at_speed(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed,
+/// The piece of that name: what `compute` returns, or why it does not.
+[[nodiscard]] AtSpeed at_speed(Pieces& pieces, const std::string& name, double speed,
                                const std::function<AtSpeed()>& compute);
 
 }  // namespace whirl::study

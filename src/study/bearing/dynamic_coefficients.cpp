@@ -14,25 +14,22 @@
 #include "study/bearing/held_film.hpp"
 #include "study/common.hpp"
 #include "study/lost_points.hpp"
-#include "whirl/core/agree.hpp"
+#include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/use/coefficients.hpp"
 
 namespace whirl::study {
 namespace {
 
-// Speed by speed, each from the last one with an answer; pieces begin with `head`. All ranks compute alike. Collective.
-std::vector<AtSpeed> computed(MPI_Comm comm, Pieces& pieces, const std::string& head,
-                              const DynamicCoefficientsOptions& options, system::Support support) {
-  std::unique_ptr<film::Film> film;
-  core::agree(comm, [&] {
-    if (options.tilt) support.film = film::tilting(support.film).value();
-    film = film::make_film(support.geometry, support.film, support.lubricant);
-  });
+// Speed by speed, each from the last one with an answer; pieces begin with `head`.
+std::vector<AtSpeed> computed(Pieces& pieces, const std::string& head, const DynamicCoefficientsOptions& options,
+                              system::Support support) {
+  if (options.tilt) support.film = film::tilting(support.film).value();
+  const auto film = film::make_film(support.geometry, support.film, support.lubricant);
   std::vector<AtSpeed> out;
   std::optional<std::size_t> last;
   for (std::size_t k = 0; k < options.speeds.size(); ++k) {
-    out.push_back(at_speed(comm, pieces, fmt::format("{} speed {}", head, k + 1), options.speeds[k].value, [&] {
+    out.push_back(at_speed(pieces, fmt::format("{} speed {}", head, k + 1), options.speeds[k].value, [&] {
       return coefficients_at(*film, options, support, options.speeds[k].value, last ? &out[*last].place : nullptr);
     }));
     if (out.back().found())
@@ -156,7 +153,18 @@ StudyResult DynamicCoefficients::run(Context& context) {
   auto& group = context.results.group();
 
   Pieces pieces(context.results, context.resume);
-  const std::vector<AtSpeed> found = computed(context.comm, pieces, "", options, train.supports[which]);
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  // The deck's mesh and the others. A coarse one may not hold what the deck asks for.
+  const auto on = [&](Pieces& own, std::size_t m) {
+    const std::array<double, 2> factor = m == 0 ? std::array{1.0, 1.0} : meshes[m - 1].factor;
+    return answered([&] {
+      return computed(own, fmt::format("on mesh {}", m), options, with_film_mesh(train, factor).supports[which]);
+    });
+  };
+  const auto on_meshes =
+      distribute_pieces(context, plan(context, Sharing::films), 1 + meshes.size(), on, pieces, "mesh");
+  if (!on_meshes[0].found) throw core::NotConverged(on_meshes[0].reason);
+  const std::vector<AtSpeed>& found = *on_meshes[0].found;
   std::vector<std::string> speeds, reasons;
   for (const deck::Quantity& q : options.speeds) speeds.push_back(number_text(q.value, q.unit) + " " + q.unit);
   for (const AtSpeed& a : found) reasons.push_back(a.reason);
@@ -177,25 +185,11 @@ StudyResult DynamicCoefficients::run(Context& context) {
   const MeshLaw law = law_of(context.machine, context.layout);
   Bars bars(numbers_of(found), law);
   SummaryBars of_summary(summary, law);
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   for (std::size_t m = 0; m < meshes.size(); ++m) {
-    std::vector<AtSpeed> other;
-    std::string reason;
-    // A coarse mesh may not hold what the deck asks for.
-    if (has_answer(
-            [&] {
-              system::Train there;
-              core::agree(context.comm, [&] { there = with_film_mesh(train, meshes[m].factor); });
-              other = computed(context.comm, pieces, fmt::format("mesh {}", m + 1), options, there.supports[which]);
-            },
-            &reason)) {
-      io::StudySummary there;
-      put_summary(there, options, clearance, other);
-      of_summary.add(meshes[m].axis, meshes[m].spacing, there);
-    } else {
-      other.clear();
-      of_summary.add(meshes[m].axis, meshes[m].spacing, io::StudySummary());
-    }
+    const std::vector<AtSpeed> other = on_meshes[m + 1].found.value_or(std::vector<AtSpeed>());
+    io::StudySummary there;
+    put_summary(there, options, clearance, other);
+    of_summary.add(meshes[m].axis, meshes[m].spacing, there);
     bars.add(meshes[m].axis, meshes[m].spacing, numbers_of(other));
   }
   of_summary.write(place_tolerance);

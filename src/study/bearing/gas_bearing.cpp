@@ -14,7 +14,7 @@
 #include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/lost_points.hpp"
-#include "whirl/core/agree.hpp"
+#include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -27,42 +27,67 @@ std::array<double, 2> gas_place(double eccentricity, double direction, double cl
   return {e * std::cos(direction), e * std::sin(direction)};
 }
 
-// The film of one rank; all compute alike.
-struct GasJob {
-  const GasBearingOptions& options;
-  MPI_Comm comm;
-  Pieces& pieces;
+using Rows = std::vector<GasRow>;
 
-  // [speed][eccentricity], with the fields of the last eccentricity; pieces begin with `head`.
-  [[nodiscard]] std::vector<GasRow> curves(const std::string& head, const system::Support& s, bool fields) const {
-    std::vector<GasRow> out;
-    for (const deck::Quantity& speed : options.speeds)
-      for (std::size_t k = 0; k < options.eccentricities.size(); ++k) {
-        const double e = options.eccentricities[k];
-        out.push_back(gas_row(comm, pieces, fmt::format("{} {:.17g} {:.17g}", head, speed.value, e), speed.value,
-                              fields && k + 1 == options.eccentricities.size(), [&] {
-                                return gas_at(s, speed.value, gas_place(e, options.direction, s.geometry.clearance));
-                              }));
-        out.back().eccentricity = e;
-      }
-    return out;
+// Films that do not wait for each other: what is asked of them, and then the answers, shared between the ranks.
+class GasJob {
+public:
+  explicit GasJob(const GasBearingOptions& options) : options_(options) {}
+
+  // These rows, found by find().
+  struct Asked {
+    std::size_t first, count;
+  };
+  // At one place.
+  Asked at(const system::Support& s, double speed, double eccentricity, bool fields = false) {
+    asked_.push_back([this, s, speed, eccentricity, fields] {
+      const auto place = gas_place(eccentricity, options_.direction, s.geometry.clearance);
+      GasRow row = gas_row(speed, fields, [&] { return gas_at(s, speed, place); });
+      row.eccentricity = eccentricity;
+      return row;
+    });
+    return {asked_.size() - 1, 1};
   }
-
+  // [speed][eccentricity], with the fields of the last eccentricity.
+  Asked curves(const system::Support& s, bool fields) {
+    const std::size_t first = asked_.size();
+    for (const deck::Quantity& speed : options_.speeds)
+      for (std::size_t k = 0; k < options_.eccentricities.size(); ++k)
+        (void)at(s, speed.value, options_.eccentricities[k], fields && k + 1 == options_.eccentricities.size());
+    return {first, asked_.size() - first};
+  }
   // Under the load, speed by speed; none without a load.
-  [[nodiscard]] std::vector<GasRow> equilibria(const std::string& head, const system::Support& s) const {
-    std::vector<GasRow> out;
-    if (options.load.values.empty()) return out;
-    for (const deck::Quantity& speed : options.speeds)
-      out.push_back(gas_row(comm, pieces, fmt::format("{} load {:.17g}", head, speed.value), speed.value, false, [&] {
-        FilmAtRest film(s, speed.value);
-        film.carry(load_along(options.load));
-        return gas_at(s, speed.value, film.place());
-      }));
-    return out;
+  Asked equilibria(const system::Support& s) {
+    const std::size_t first = asked_.size();
+    if (options_.load.values.empty()) return {first, 0};
+    for (const deck::Quantity& speed : options_.speeds)
+      asked_.push_back([this, s, speed = speed.value] {
+        return gas_row(speed, false, [&] {
+          FilmAtRest film(s, speed);
+          film.carry(load_along(options_.load));
+          return gas_at(s, speed, film.place());
+        });
+      });
+    return {first, asked_.size() - first};
   }
+
+  // Collective.
+  void find(const Layout& layout, Pieces& pieces) {
+    rows_ = distribute(
+        layout, asked_.size(), [this](std::size_t k) { return asked_[k](); }, pieces, "film", no_trail);
+  }
+  [[nodiscard]] Rows operator[](const Asked& of) const {
+    const auto first = rows_.begin() + static_cast<std::ptrdiff_t>(of.first);
+    return {first, first + static_cast<std::ptrdiff_t>(of.count)};
+  }
+
+private:
+  const GasBearingOptions& options_;
+  std::vector<std::function<GasRow()>> asked_;
+  Rows rows_;
 };
 
-void put_gas_summary(io::StudySummary& summary, const std::vector<GasRow>& points, const std::string& head) {
+void put_gas_summary(io::StudySummary& summary, const Rows& points, const std::string& head) {
   for (const GasRow& p : points) {
     if (!p.found()) continue;
     const std::string which = head.empty() ? fmt::format("speed.{:.6g}.eccentricity.{:.6g}.", p.speed, p.eccentricity)
@@ -80,13 +105,13 @@ void put_gas_summary(io::StudySummary& summary, const std::vector<GasRow>& point
 }
 
 // Why rows have no film, if any has none.
-void put_reasons(io::Group& table, const io::Shape& shape, const std::vector<GasRow>& rows) {
+void put_reasons(io::Group& table, const io::Shape& shape, const Rows& rows) {
   if (std::ranges::all_of(rows, &GasRow::found)) return;
   table.put("reason",
             io::Dataset{shape, column(rows, &GasRow::reason), "", "why there is no film; empty: there is one"});
 }
 
-void put_gas_table(io::Group& table, const io::Shape& shape, const std::vector<GasRow>& rows) {
+void put_gas_table(io::Group& table, const io::Shape& shape, const Rows& rows) {
   for (std::size_t k = 0; k < gas_quantities().size(); ++k) {
     const GasQuantity& q = gas_quantities()[k];
     table.put(q.name, shape, column(rows, [k](const GasRow& r) { return r.values[k]; }), q.unit,
@@ -96,7 +121,7 @@ void put_gas_table(io::Group& table, const io::Shape& shape, const std::vector<G
 }
 
 // Of the last eccentricity, speed by speed; not numbers at a speed without a film there.
-void put_gas_fields(io::Group& group, const GasBearingOptions& o, const std::vector<GasRow>& rows) {
+void put_gas_fields(io::Group& group, const GasBearingOptions& o, const Rows& rows) {
   const std::size_t each = o.eccentricities.size();
   const auto of = [&](std::size_t speed) -> const GasRow& { return rows[(speed + 1) * each - 1]; };
   std::size_t known = 0;
@@ -124,28 +149,33 @@ double observed_order(const std::vector<double>& v) {
   return n < 3 ? io::no_value : std::log2(std::abs((v[n - 2] - v[n - 3]) / (v[n - 1] - v[n - 2])));
 }
 
-void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasJob& job, const system::Support& s) {
-  const GasBearingOptions& o = job.options;
+// From coarse to fine, each with the pressure at the rims of the orifices and with that of their nodes.
+GasJob::Asked ask_gas_meshes(GasJob& job, const GasBearingOptions& o, const system::Support& s) {
+  GasJob::Asked out{};
+  for (int k = o.meshes - 1; k >= 0; --k)
+    for (const auto source : {film::Gas::Source::rim, film::Gas::Source::node}) {
+      system::Support there = s;
+      film::Gas& gas = film::as<film::Gas>(there.film);
+      for (int& n : gas.cells) n >>= k;
+      gas.source = source;
+      const auto one = job.at(there, o.speeds.front().value, o.eccentricities.back());
+      out = {out.count == 0 ? one.first : out.first, out.count + 1};
+    }
+  return out;
+}
+
+void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasBearingOptions& o, const film::Gas& gas,
+                    const Rows& rows) {
   std::vector<double> around, along;
   std::array<std::vector<double>, 2> load;
   std::vector<std::string> reasons;
-  for (int k = o.meshes - 1; k >= 0; --k) {
-    system::Support there = s;
-    film::Gas& gas = film::as<film::Gas>(there.film);
-    for (int& n : gas.cells) n >>= k;
-    around.push_back(gas.cells[0]);
-    along.push_back(gas.cells[1]);
-    for (const auto source : {film::Gas::Source::rim, film::Gas::Source::node}) {
-      gas.source = source;
-      const bool rim = source == film::Gas::Source::rim;
-      const auto at = gas_place(o.eccentricities.back(), o.direction, s.geometry.clearance);
-      const double speed = o.speeds.front().value;
-      const GasRow row = gas_row(job.comm, job.pieces, fmt::format("meshes {} {}", k, rim ? "rim" : "node"), speed,
-                                 false, [&] { return gas_at(there, speed, at); });
-      load[rim ? 0 : 1].push_back(row.values[0]);
-      // Pockets have no source in a node.
-      if (rim) reasons.push_back(row.reason);
-    }
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    load[k % 2].push_back(rows[k].values[0]);
+    if (k % 2 != 0) continue;
+    const int halvings = o.meshes - 1 - static_cast<int>(k / 2);
+    around.push_back(gas.cells[0] >> halvings);
+    along.push_back(gas.cells[1] >> halvings);
+    reasons.push_back(rows[k].reason);  // pockets have no source in a node
   }
   auto& table = group.child("meshes");
   table.put("around", around, "1", "cells around the bearing");
@@ -160,20 +190,21 @@ void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasJob& j
     if (const double order = observed_order(load[of]); std::isfinite(order)) summary.set(name, order, "1");
 }
 
-// Rows [clearance][diameter].
-std::vector<GasRow> put_gas_map(io::Group& group, const GasJob& job, const system::Support& s) {
-  const GasBearingOptions& o = job.options;
-  const GasMapOptions& map = *o.map;
-  const double speed = o.speeds.front().value;
-  std::vector<GasRow> rows;
-  for (const deck::Quantity& c : map.clearances)
-    for (const deck::Quantity& d : map.diameters) {
+// [clearance][diameter].
+GasJob::Asked ask_gas_map(GasJob& job, const GasBearingOptions& o, const system::Support& s) {
+  GasJob::Asked out{};
+  for (const deck::Quantity& c : o.map->clearances)
+    for (const deck::Quantity& d : o.map->diameters) {
       system::Support there = s;
       there.geometry.clearance = c.value;
       for (film::OrificeRow& row : film::as<film::Gas>(there.film).orifices) row.diameter = d.value;
-      rows.push_back(gas_row(job.comm, job.pieces, fmt::format("map {:.17g} {:.17g}", c.value, d.value), speed, false,
-                             [&] { return gas_at(there, speed, gas_place(map.eccentricity, o.direction, c.value)); }));
+      const auto one = job.at(there, o.speeds.front().value, o.map->eccentricity);
+      out = {out.count == 0 ? one.first : out.first, out.count + 1};
     }
+  return out;
+}
+
+void put_gas_map(io::Group& group, const GasMapOptions& map, const Rows& rows) {
   auto& table = group.child("map");
   const io::Shape shape{map.clearances.size(), map.diameters.size()};
   table.put("clearance", column(map.clearances, &deck::Quantity::value), "m", "of the bearing");
@@ -188,7 +219,6 @@ std::vector<GasRow> put_gas_map(io::Group& group, const GasJob& job, const syste
   put_reasons(table, shape, rows);
   table.label_each({io::labels_of(column(map.diameters, &deck::Quantity::value))});
   table.set("eccentricity", map.eccentricity);
-  return rows;
 }
 
 // Thickness of a film at Knudsen numbers where slip begins to show, where it has to be counted, and of free molecules.
@@ -217,11 +247,22 @@ StudyResult GasBearing::run(Context& context) {
   auto& summary = results.summary();
   auto& group = results.group();
   Pieces pieces(results, context.resume);
-  const GasJob job{options, context.comm, pieces};
-  const std::vector<GasRow> curves = job.curves("curve", support, true), equilibria = job.equilibria("", support);
-  if (options.meshes > 0) put_gas_meshes(group, summary, job, support);
-  std::vector<GasRow> map;
-  if (options.map) map = put_gas_map(group, job, support);
+  const Layout layout = plan(context, Sharing::films);
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  GasJob job(options);
+  const auto on_curves = job.curves(support, true), at_load = job.equilibria(support);
+  const auto of_meshes = ask_gas_meshes(job, options, support);
+  const auto of_map = options.map ? ask_gas_map(job, options, support) : GasJob::Asked{};
+  std::vector<system::Support> others;
+  std::vector<std::array<GasJob::Asked, 2>> elsewhere;
+  for (const FilmMesh& mesh : meshes) {
+    others.push_back(with_film_mesh(train, mesh.factor).supports[which]);
+    elsewhere.push_back({job.curves(others.back(), false), job.equilibria(others.back())});
+  }
+  job.find(layout, pieces);
+  const Rows curves = job[on_curves], equilibria = job[at_load], map = job[of_map];
+  if (options.meshes > 0) put_gas_meshes(group, summary, options, *film::find<film::Gas>(support.film), job[of_meshes]);
+  if (options.map) put_gas_map(group, *options.map, map);
   put_gas_summary(summary, curves, "");
   put_gas_summary(summary, equilibria, "equilibrium");
   // The first speed at which the film does not carry the load.
@@ -232,31 +273,23 @@ StudyResult GasBearing::run(Context& context) {
   }
 
   SummaryBars bars(summary, law_of(context.machine, context.layout));
-  int mesh_number = 0;
-  for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
-    const std::string head = fmt::format("mesh {}", ++mesh_number);
+  std::vector<Answered<Capacity>> most(meshes.size());
+  if (none != equilibria.end())
+    most = distribute(
+        layout, meshes.size(),
+        [&](std::size_t k) {
+          return answered([&] { return FilmAtRest(others[k], none->speed).capacity(load_along(options.load)); });
+        },
+        pieces, "capacity", no_trail);
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
     io::StudySummary there;
-    system::Support other;
-    core::agree(context.comm, [&] { other = with_film_mesh(train, mesh.factor).supports[which]; });
-    put_gas_summary(there, job.curves(head, other, false), "");
-    put_gas_summary(there, job.equilibria(head, other), "equilibrium");
-    if (none != equilibria.end()) {
-      const std::vector<double> most = pieces.numbers(head + " capacity", [&] {
-        std::vector<double> out;
-        core::agree(context.comm, [&] {
-          (void)has_answer([&] {
-            const Capacity c = FilmAtRest(other, none->speed).capacity(load_along(options.load));
-            out = {c.load, c.eccentricity};
-          });
-        });
-        return out;
-      });
-      if (!most.empty()) {
-        there.set("capacity.load", most[0], "N");
-        there.set("capacity.eccentricity", most[1], "1");
-      }
+    put_gas_summary(there, job[elsewhere[k][0]], "");
+    put_gas_summary(there, job[elsewhere[k][1]], "equilibrium");
+    if (most[k].found) {
+      there.set("capacity.load", most[k].found->load, "N");
+      there.set("capacity.eccentricity", most[k].found->eccentricity, "1");
     }
-    bars.add(mesh.axis, mesh.spacing, there);
+    bars.add(meshes[k].axis, meshes[k].spacing, there);
   }
   constexpr double location = 1e-9;
   bars.write(location);
@@ -267,7 +300,7 @@ StudyResult GasBearing::run(Context& context) {
   table.put("speed", column(options.speeds, &deck::Quantity::value), "rad/s", "of the shaft");
   table.put("eccentricity", options.eccentricities, "1", "of the journal, in clearances");
   put_gas_table(table, {options.speeds.size(), options.eccentricities.size()}, curves);
-  const auto found = [](const std::vector<GasRow>& rows) { return std::ranges::count_if(rows, &GasRow::found); };
+  const auto found = [](const Rows& rows) { return std::ranges::count_if(rows, &GasRow::found); };
   if (found(equilibria) > 0) {
     auto& at = group.child("equilibria");
     at.put("speed", column(options.speeds, &deck::Quantity::value), "rad/s", "of the shaft");
@@ -279,7 +312,7 @@ StudyResult GasBearing::run(Context& context) {
   put_gas_fields(group, options, curves);
   put_knudsen(group, *film::find<film::Gas>(support.film), support.lubricant.viscosity);
   summary.points = static_cast<long>(found(curves) + found(equilibria));
-  const auto warn = [&](const std::vector<GasRow>& rows, const std::function<std::string(std::size_t)>& words) {
+  const auto warn = [&](const Rows& rows, const std::function<std::string(std::size_t)>& words) {
     for (std::string& line : lost_points("no film at", column(rows, &GasRow::reason), words))
       summary.warnings.push_back(std::move(line));
   };

@@ -81,18 +81,16 @@ std::span<const GasQuantity> gas_quantities() {
   return all;
 }
 
-GasRow gas_row(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed, bool fields,
-               const std::function<GasPoint()>& compute) {
-  GasRow row = pieces.value(name, [&] {
-    GasRow out;
-    const WithoutFilm none = agreed_film(comm, [&] {
-      GasPoint p = compute();
-      out.eccentricity = p.eccentricity;
-      out.place = p.place;
-      for (const GasQuantity& q : gas_quantities()) out.values.push_back(q.of(p));
-      if (fields) out.fields = std::move(p.fields);
-    });
-    if (none.reason.empty()) return out;
+GasRow gas_row(double speed, bool fields, const std::function<GasPoint()>& compute) {
+  GasRow out;
+  const WithoutFilm none = agreed_film(MPI_COMM_SELF, [&] {
+    GasPoint p = compute();
+    out.eccentricity = p.eccentricity;
+    out.place = p.place;
+    for (const GasQuantity& q : gas_quantities()) out.values.push_back(q.of(p));
+    if (fields) out.fields = std::move(p.fields);
+  });
+  if (!none.reason.empty()) {
     out = {};
     out.values.assign(gas_quantities().size(), io::no_value);
     out.reason = none.reason;
@@ -100,10 +98,9 @@ GasRow gas_row(MPI_Comm comm, Pieces& pieces, const std::string& name, double sp
       out.capacity = none.most->load;
       out.at_capacity = none.most->eccentricity;
     }
-    return out;
-  });
-  row.speed = speed;
-  return row;
+  }
+  out.speed = speed;
+  return out;
 }
 
 }  // namespace whirl::study

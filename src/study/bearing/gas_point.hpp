@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "study/pieces.hpp"
+#include "study/packed.hpp"
 #include "whirl/film/contract/film.hpp"
 #include "whirl/film/contract/gas.hpp"
+#include "whirl/io/quantity.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::study {
@@ -48,15 +49,13 @@ struct GasRow {
   std::string reason;                                          ///< empty: there is a film
   double capacity = io::no_value, at_capacity = io::no_value;  ///< N; eccentricity: the most that it carries
   [[nodiscard]] bool found() const { return reason.empty(); }
-  void members(auto& archive) { archive(eccentricity, place, values, fields, reason, capacity, at_capacity); }
+  void members(auto& archive) { archive(speed, eccentricity, place, values, fields, reason, capacity, at_capacity); }
 };
 void members(auto& archive, film::NodalField& f) {
   archive(f.pad, f.name, f.unit, f.shape, f.values);
 }
 
-/// The piece of that name: what `compute` returns, which must not communicate, or why it does not. A film that carries
-/// less than its load leaves the most that it carries. All ranks compute alike, and get the same. Collective.
-[[nodiscard]] GasRow gas_row(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed, bool fields,
-                             const std::function<GasPoint()>& compute);
+/// What `compute` returns, or why it does not. A film that carries less than its load leaves the most that it carries.
+[[nodiscard]] GasRow gas_row(double speed, bool fields, const std::function<GasPoint()>& compute);
 
 }  // namespace whirl::study

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "study/bars/summary_bars.hpp"
@@ -40,15 +41,8 @@ double CycleFollower::normal_form(solve::PeriodicProblem& problem, system::Plant
   return out;
 }
 
-std::vector<double> CycleFollower::kept_numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
-                                                   const solve::Cycle& cycle, bool with_coefficient) const {
-  return pieces_->numbers(piece(fmt::format("on mesh {} {:.3f}", static_cast<int>(mesh.axis), mesh.spacing)), [&] {
-    const auto numbers = numbers_on(mesh, found, cycle, with_coefficient);
-    return numbers ? numbers->list() : std::vector<double>{};
-  });
-}
-
-void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u) {
+CycleFollower::Rows CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& found,
+                                            const solve::Cycle& cycle, Vec u) {
   CycleNumbers here{found.parameter, std::abs(std::arg(found.critical)), cycle.period, io::no_value};
   const bool fold = found.event == solve::Event::cyclic_fold, flip = found.event == solve::Event::flip,
              // Of a flip without film mesh the branch born there tells more: see set_criticality().
@@ -66,17 +60,29 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
     doubt = doubt_of_steps(with("short normal form", steps.shorter), here.coefficient);
   }
   Bars bars(here.list(), law()), of_coefficient({here.coefficient}, law());
-  for (const CycleMesh& mesh : meshes()) {
-    // A verdict that is lost on one mesh needs no others. Of finer films the coarser ones tell.
-    const bool tells = fold || mesh.axis == Axis::time || mesh.spacing > 1,
-               also = tells && decided(here.coefficient, doubt);
+  const std::vector<CycleMesh> all = meshes();
+  const solve::Cycle direction = along(found, cycle);
+  Rows elsewhere;
+  for (auto first = all.begin(), end = first; first != all.end(); first = end) {
+    end = std::find_if(first, all.end(), [&](const CycleMesh& m) { return m.axis != first->axis; });
+    // A verdict that is lost in one direction needs no others. Of finer films the coarser ones tell.
+    const bool open = decided(here.coefficient, doubt);
+    const auto also = [&](const CycleMesh& m) { return open && (fold || m.axis == Axis::time || m.spacing > 1); };
     // Near contact the same cycle may leave the validity of the film on another mesh: no number there.
-    const auto there = kept_numbers_on(mesh, found, cycle, also);
-    bars.add(mesh.axis, mesh.spacing, there);
-    if (!also) continue;
-    const double c = there.empty() ? io::no_value : there.back();
-    of_coefficient.add(mesh.axis, mesh.spacing, {c});
-    if (!(c * here.coefficient > 0)) doubt = std::max(doubt, std::abs(c - here.coefficient));
+    const auto numbers = [&](const CycleMesh& mesh) {
+      const auto there = numbers_on(mesh, found, cycle, direction, also(mesh));
+      return there ? there->list() : std::vector<double>{};
+    };
+    const Rows rows = on_each({first, end}, piece(fmt::format("direction {}", static_cast<int>(first->axis))), numbers);
+    elsewhere.insert(elsewhere.end(), rows.begin(), rows.end());
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const CycleMesh& mesh = first[static_cast<std::ptrdiff_t>(k)];
+      bars.add(mesh.axis, mesh.spacing, rows[k]);
+      if (!also(mesh) || !decided(here.coefficient, doubt)) continue;
+      const double c = rows[k].empty() ? io::no_value : rows[k].back();
+      of_coefficient.add(mesh.axis, mesh.spacing, {c});
+      if (!(c * here.coefficient > 0)) doubt = std::max(doubt, std::abs(c - here.coefficient));
+    }
   }
   Bar place = bars[0];
   // Newton's method leaves a residual, and no two solutions agree better.
@@ -104,6 +110,7 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
   else if (forms)
     put_criticality(b, here.coefficient, error, "subcritical", "supercritical",
                     "cubic coefficient of the flip's normal form (Kuznetsov 2004, 5.68)");
+  return elsewhere;
 }
 
 // A fold right beside the birth of the branch may be the work of a film's kinks alone.
@@ -161,8 +168,9 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     seed = seed_at(cycle);
     if (options_.follow_flips) seeds_.push_back(*seed);
   }
+  Rows on_meshes;
   if (found.located) {
-    put_bars(b, found, cycle, u);
+    on_meshes = put_bars(b, found, cycle, u);
   } else {
     b.more["bracket"] = found.bracket;
     b.criticality_by = "not located: lies within the bracket";
@@ -173,8 +181,12 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     const auto twice = twice_the_period(*seed);
     const solve::Restart leaving = leave_flip(*twice, *seed);
     const auto elsewhere = [&](const CycleMesh& mesh) -> std::optional<Parabola> {
-      const std::vector<double> there = kept_numbers_on(mesh, found, cycle, false);
-      return there.empty() ? std::nullopt : born_on(mesh, cycle, there.front());
+      const std::vector<CycleMesh> all = meshes();
+      const auto same = std::ranges::find_if(
+          all, [&](const CycleMesh& m) { return m.axis == mesh.axis && m.spacing == mesh.spacing; });
+      const auto k = static_cast<std::size_t>(same - all.begin());
+      if (k >= on_meshes.size() || on_meshes[k].empty()) return {};
+      return born_on(mesh, cycle, on_meshes[k].front());
     };
     pieces_->complete(piece("criticality"), b, [&] {
       set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity, elsewhere);

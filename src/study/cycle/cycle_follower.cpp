@@ -213,13 +213,19 @@ void CycleFollower::report(const std::string& key, Vec u) {
   record_.report(key, orbit, problem_->orbit_scheme(), *system_, stability_of(*problem_, *system_), own);
   shafts_.append("at", cycle.parameter / scale_, orbit, problem_->orbit_scheme(), *system_);
   SummaryBars bars(own, law());
-  for (const CycleMesh& mesh : meshes())
-    bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
+  const std::vector<CycleMesh> all = meshes();
+  const Rows rows = on_each(all, fmt::format("report {} on mesh", key), [&](const CycleMesh& mesh) {
+    io::StudySummary there;
+    const auto answer = [&] {
       if (const auto other = corrected_on(mesh, cycle))
         record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(),
                        other->other ? *other->other : *system_,
                        stability_of(*other->problem, other->other ? *other->other : *system_), there);
-    });
+    };
+    if (!has_answer(answer)) there = {};
+    return bars.row(there);
+  });
+  for (std::size_t k = 0; k < all.size(); ++k) bars.add(all[k].axis, all[k].spacing, rows[k]);
   bars.write(newton_.tolerance);
   for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
 }

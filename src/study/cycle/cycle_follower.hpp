@@ -139,7 +139,7 @@ private:
   /// Of a point of the branch, for the slope at which it meets its limit.
   void add_margin(double parameter, const solve::Cycle& orbit);
   /// Where the branch comes to its contact at `place` (scaled) on other meshes; `last` is its last cycle.
-  [[nodiscard]] std::vector<ContactThere> contacts_there(const solve::Cycle& last, double place) const;
+  [[nodiscard]] std::vector<ContactThere> contacts_there(const solve::Cycle& last, double place);
   void doubt(BranchVerdict& verdict);
   /// Puts a pair that no mesh confirms among the suspicions instead.
   [[nodiscard]] bool left_as_doubtful(const io::Bifurcation& b, const solve::LocatedEvent& found);
@@ -207,19 +207,26 @@ private:
   /// Solves it there at the same parameter, and linearises.
   [[nodiscard]] bool correct_there(Elsewhere& there, const solve::Cycle& given) const;
   [[nodiscard]] std::optional<Elsewhere> corrected_on(const CycleMesh& mesh, const solve::Cycle& given) const;
+  /// Rows that `work` makes on each of these meshes, pieces `name 1`, ...: shared between the ranks where each holds a
+  /// whole machine, which then solves cycles by itself. `work` asks nothing of the cycles that are followed.
+  using Rows = std::vector<std::vector<double>>;
+  [[nodiscard]] Rows on_each(const std::vector<CycleMesh>& meshes, const std::string& name,
+                             const std::function<std::vector<double>(const CycleMesh&)>& work);
+  /// Direction of the branch at its fold; nothing of other bifurcations.
+  [[nodiscard]] solve::Cycle along(const solve::LocatedEvent& found, const solve::Cycle& given) const;
   [[nodiscard]] std::optional<CycleNumbers> fold_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
-                                                    const solve::Cycle& given) const;
+                                                    const solve::Cycle& given, const solve::Cycle& along) const;
   /// The same bifurcation on another mesh; nothing if it cannot be had.
   [[nodiscard]] std::optional<CycleNumbers> numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
-                                                       const solve::Cycle& cycle, bool with_coefficient) const;
+                                                       const solve::Cycle& cycle, const solve::Cycle& along,
+                                                       bool with_coefficient) const;
   /// Of the branch of twice the period that is born at `flip`, whose scaled place there is given.
   [[nodiscard]] std::optional<Parabola> born_on(const CycleMesh& mesh, const solve::Cycle& flip, double place) const;
-  /// numbers_on() of the event that comes next, unless known; empty if it cannot be had.
-  [[nodiscard]] std::vector<double> kept_numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
-                                                    const solve::Cycle& cycle, bool with_coefficient) const;
   [[nodiscard]] double normal_form(solve::PeriodicProblem& problem, system::Plant& system, solve::Event event,
                                    std::complex<double> critical, Vec u, double step) const;
-  void put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u);
+  /// Puts the bars of the event that comes next into `b`; returns numbers_on() all meshes(), empty where they cannot be
+  /// had.
+  Rows put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u);
   /// The cycle with the own states of its films on the meshes of `to`.
   [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
   void correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out);
@@ -254,6 +261,7 @@ private:
   std::optional<Watched> nearest_;
   bool leaves_ = false;             // the bifurcation that the branch is born at
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
+  bool alone_ = false;              // this rank solves cycles by itself for a while
   int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;
   std::vector<BranchChange> changes_;

@@ -54,6 +54,23 @@ std::vector<CycleMesh> CycleFollower::meshes() const {
   return out;
 }
 
+CycleFollower::Rows CycleFollower::on_each(const std::vector<CycleMesh>& meshes, const std::string& name,
+                                           const std::function<std::vector<double>(const CycleMesh&)>& work) {
+  const Layout shared = layout();
+  const auto row = [&](std::size_t k) {
+    if (shared.count == 1) return work(meshes[k]);
+    // Others do not have what this rank finds on its way.
+    const solve::NewtonOptions logged = newton_;
+    newton_.replay_log = nullptr;
+    alone_ = true;
+    std::vector<double> out = work(meshes[k]);
+    alone_ = false;
+    newton_ = logged;
+    return out;
+  };
+  return distribute_numbers(shared, meshes.size(), row, *pieces_, name);
+}
+
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMesh& mesh, system::Plant& system,
                                                                   const solve::Cycle& cycle) const {
   if (mesh.axis != Axis::time) return make_problem(system, options_.period, cycle.mesh, 1);
@@ -140,27 +157,41 @@ void CycleFollower::judge_multiplier(const Watched& at) {
   const double modulus = at.modulus;
   const solve::Cycle& cycle = at.cycle;
   Bars bars({modulus}, law());
-  for (const CycleMesh& mesh : meshes()) {
-    const auto there = pieces_->numbers(
-        fmt::format("multiplier {} on mesh {} {:.3f}", at.index, static_cast<int>(mesh.axis), mesh.spacing), [&] {
-          return answer_of([&] {
-            const auto other = corrected_on(mesh, cycle);
-            if (!other) return std::vector<double>{};
-            return std::vector{leading(stability_of(*other->problem, other->other ? *other->other : *system_))};
-          });
-        });
-    bars.add(mesh.axis, mesh.spacing, there);
-  }
+  const std::vector<CycleMesh> all = meshes();
+  const Rows rows = on_each(all, fmt::format("multiplier {} on mesh", at.index), [&](const CycleMesh& mesh) {
+    return answer_of([&] {
+      const auto other = corrected_on(mesh, cycle);
+      if (!other) return std::vector<double>{};
+      return std::vector{leading(stability_of(*other->problem, other->other ? *other->other : *system_))};
+    });
+  });
+  for (std::size_t k = 0; k < all.size(); ++k) bars.add(all[k].axis, all[k].spacing, rows[k]);
   const Bar bar = bars[0];
   const double total = bar.total() + newton_.tolerance;
   multiplier_bars_.append({static_cast<double>(at.index), at.parameter, modulus, total, bar.film_mesh + bar.kinks,
                            bar.time_mesh, decided(modulus, total, 1) ? 1.0 : 0.0});
 }
 
+// The direction of the branch at its fold has no part in the parameter. It is that of the branch found: another
+// discretisation is not at a fold here, and its own direction would hold the parameter instead of the amplitude.
+solve::Cycle CycleFollower::along(const solve::LocatedEvent& found, const solve::Cycle& given) const {
+  if (found.event != solve::Event::cyclic_fold) return {};
+  core::Vector at = problem_->scatter(given), along = core::duplicate(at.get()), row = core::duplicate(at.get()),
+               rhs = core::duplicate(at.get());
+  check(VecCopy(at.get(), along.get()));
+  solve::set_last_entry(problem_->comm(), along.get(), 0);
+  solve::weighted_row(*problem_, along.get(), row.get());
+  problem_->linearise(at.get(), row.get());
+  check(VecSet(rhs.get(), 0.0));
+  solve::set_last_entry(problem_->comm(), rhs.get(), 1);
+  (void)solve::solve_linear(*problem_, rhs.get(), along.get(), "tangent_");
+  return problem_->gather(along.get());
+}
+
 // Folds have no cycle beyond them, so the parameter cannot be held: the cycle of the same amplitude along the branch is
 // solved, and the fold sought from there.
 std::optional<CycleNumbers> CycleFollower::fold_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
-                                                   const solve::Cycle& given) const {
+                                                   const solve::Cycle& given, const solve::Cycle& along) const {
   const auto other = mesh.axis == Axis::time ? nullptr : make_system(mesh.film);
   system::Plant& system = other ? *other : *system_;
   const solve::Cycle cycle = on_film_of(system, given);
@@ -169,19 +200,8 @@ std::optional<CycleNumbers> CycleFollower::fold_on(const CycleMesh& mesh, const 
   solve::PeriodicProblem& problem = *made;
   if (autonomous()) problem.set_phase_reference(cycle);
   core::Vector u = problem.scatter(cycle), row = core::duplicate(u.get());
-  // The direction of the branch at its fold has no part in the parameter. It is that of the branch found: the other
-  // discretisation is not at a fold here, and its own direction would hold the parameter instead of the amplitude.
-  core::Vector at = problem_->scatter(given), along = core::duplicate(at.get()), own_row = core::duplicate(at.get()),
-               rhs = core::duplicate(at.get());
-  check(VecCopy(at.get(), along.get()));
-  solve::set_last_entry(problem_->comm(), along.get(), 0);
-  solve::weighted_row(*problem_, along.get(), own_row.get());
-  problem_->linearise(at.get(), own_row.get());
-  check(VecSet(rhs.get(), 0.0));
-  solve::set_last_entry(problem_->comm(), rhs.get(), 1);
-  (void)solve::solve_linear(*problem_, rhs.get(), along.get(), "tangent_");
   // Own states of a film are resampled with the journal's place, affinely: a direction is the difference of two.
-  solve::Cycle direction = problem_->gather(along.get()), moved = given;
+  solve::Cycle direction = along, moved = given;
   moved.x += direction.x;
   direction.x = on_film_of(system, std::move(moved)).x - cycle.x;
   const core::Vector tangent = problem.scatter(direction);
@@ -211,9 +231,10 @@ std::optional<std::complex<double>> nearest_multiplier(solve::PeriodicProblem& p
 }  // namespace
 
 std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
-                                                      const solve::Cycle& cycle, bool with_coefficient) const {
+                                                      const solve::Cycle& cycle, const solve::Cycle& along,
+                                                      bool with_coefficient) const {
   return answer_of([&]() -> std::optional<CycleNumbers> {
-    if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle);
+    if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle, along);
     auto there = carried_to(mesh, cycle);
     if (!there) return {};
     // On a coarser film the bifurcation is far and the film cheap, and a normal form is that of the bifurcation: it is
@@ -280,16 +301,14 @@ std::optional<Parabola> CycleFollower::born_on(const CycleMesh& mesh, const solv
   });
 }
 
-std::vector<ContactThere> CycleFollower::contacts_there(const solve::Cycle& last, double place) const {
-  std::vector<ContactThere> out;
-  for (const CycleMesh& mesh : meshes()) {
-    out.push_back({mesh.axis, mesh.spacing, io::no_value});
+std::vector<ContactThere> CycleFollower::contacts_there(const solve::Cycle& last, double place) {
+  const auto on = [&](const CycleMesh& mesh) {
     auto there = answer_of([&] { return carried_to(mesh, last); });
-    if (!there) continue;
+    if (!there) return std::vector{io::no_value};
     system::Plant& system = there->other ? *there->other : *system_;
     core::Vector row = core::duplicate(there->u.get());
     solve::parameter_row(*there->problem, row.get());
-    out.back().place = contact_there(place, margins_, [&](double parameter) {
+    return std::vector{contact_there(place, margins_, [&](double parameter) {
       double found = unknown;
       (void)has_answer([&] {
         core::Vector trial = core::duplicate(there->u.get());
@@ -299,8 +318,12 @@ std::vector<ContactThere> CycleFollower::contacts_there(const solve::Cycle& last
         std::swap(there->u, trial);
       });
       return found;
-    });
-  }
+    })};
+  };
+  const std::vector<CycleMesh> all = meshes();
+  const Rows rows = on_each(all, "contact on mesh", on);
+  std::vector<ContactThere> out;
+  for (std::size_t k = 0; k < all.size(); ++k) out.push_back({all[k].axis, all[k].spacing, rows[k].front()});
   return out;
 }
 
@@ -314,9 +337,10 @@ double CycleFollower::time_error(const Located& at) {
   found.sensitivity = at.sensitivity;
   found.critical = at.critical;
   Bars bars({found.parameter}, law());
+  const solve::Cycle direction = along(found, at.cycle);
   for (const CycleMesh& mesh : meshes())
     if (mesh.axis == Axis::time) {
-      const auto there = numbers_on(mesh, found, at.cycle, false);
+      const auto there = numbers_on(mesh, found, at.cycle, direction, false);
       bars.add(mesh.axis, mesh.spacing, there ? std::vector{there->place} : std::vector<double>{});
     }
   return bars[0].time_mesh;

@@ -52,7 +52,10 @@ Layout CycleFollower::layout(std::size_t intervals) const {
           ? Sharing::cycles
           : Sharing::intervals;
   // The groups of a machine whose states are spread stay the same on all meshes.
-  return plan(context_, sharing, sharing == Sharing::cycles ? static_cast<std::size_t>(options_.intervals) : intervals);
+  Layout out =
+      plan(context_, sharing, sharing == Sharing::cycles ? static_cast<std::size_t>(options_.intervals) : intervals);
+  if (alone_) out.time = MPI_COMM_SELF;
+  return out;
 }
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plant& system, int turns,

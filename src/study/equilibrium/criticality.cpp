@@ -88,13 +88,17 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium
   put_counts(b, change_at(hopf, -1));
   solve::NewtonOptions newton = newton_;
   newton.max_iterations = 20;
+  if (layout().count > 1) newton.replay_log = nullptr;  // others do not have what this rank finds on its way
   std::function<std::unique_ptr<system::Plant>()> cut;
   if (has_shaft_mesh(context_.machine, context_.layout)) cut = [this] { return make_system({1, 1}, 2); };
   pieces_->complete("hopf bars", b, [&] {
     study::describe(
         b, {*system_, equilibrium, hopf, scale_, state_weight(), newton, film_meshes(context_.machine, context_.layout),
             law_of(context_.machine, context_.layout), [this](const auto& cells) { return make_system(cells); },
-            [this](const auto& name, const auto& work) { return pieces_->numbers("hopf " + name, work); }, cut});
+            [this](const auto& name, std::size_t n, const auto& work) {
+              return distribute_numbers(layout(), n, work, *pieces_, "hopf " + name);
+            },
+            cut});
   });
   pieces_->complete("hopf criticality", b,
                     [&] { set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity); });

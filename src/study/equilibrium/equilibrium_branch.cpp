@@ -45,7 +45,7 @@ std::unique_ptr<system::Plant> plant_of(const Context& context, const Equilibriu
   wanted.value = o.parameter.range.from;
   wanted.speed = o.speed ? o.speed->value : 0;
   wanted.film_cells = film_cells;
-  return make_plant(plan(context, Sharing::machine).space, context.machine, wanted);
+  return make_plant(plan(context, Sharing::meshes).space, context.machine, wanted);
 }
 
 double state_weight_of(const EquilibriumBranchOptions& o) {
@@ -58,14 +58,13 @@ namespace {
 
 // Where the branch comes to its contact at `place` on other film meshes; `points` are some of its equilibria, the last
 // one among them.
-std::vector<ContactThere> contacts_there(const Context& context, const EquilibriumBranchOptions& options,
-                                         const system::Plant& system, const std::vector<CurvePoint>& points,
-                                         double place, double scale, const MarginSlope& here,
-                                         const solve::NewtonOptions& newton) {
-  std::vector<ContactThere> out;
-  for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
-    out.push_back({mesh.axis, mesh.spacing, io::no_value});
-    const auto other = plant_of(context, options, mesh.factor);
+std::vector<ContactThere> contacts_there(const Context& context, const Layout& layout, Pieces& pieces,
+                                         const EquilibriumBranchOptions& options, const system::Plant& system,
+                                         const std::vector<CurvePoint>& points, double place, double scale,
+                                         const MarginSlope& here, const solve::NewtonOptions& newton) {
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  const auto on = [&](std::size_t k) {
+    const auto other = plant_of(context, options, meshes[k].factor);
     const FilmLimit films(other->places());
     core::Vector x;  // the solution found last
     const auto margin_from = [&](core::Vector trial) {
@@ -77,7 +76,7 @@ std::vector<ContactThere> contacts_there(const Context& context, const Equilibri
       });
       return margin;
     };
-    out.back().place = contact_there(place, here, [&](double parameter) {
+    return contact_there(place, here, [&](double parameter) {
       other->set_parameter(parameter * scale);
       double margin = unknown;
       if (x) {
@@ -93,7 +92,10 @@ std::vector<ContactThere> contacts_there(const Context& context, const Equilibri
       const Eigen::MatrixXd& known = nearest.cycle.x;
       return margin_from(resampled(*other, system, std::vector<double>(known.data(), known.data() + known.size())));
     });
-  }
+  };
+  const std::vector<double> places = distribute(layout, meshes.size(), on, pieces, "contact on mesh", no_trail);
+  std::vector<ContactThere> out;
+  for (std::size_t k = 0; k < meshes.size(); ++k) out.push_back({meshes[k].axis, meshes[k].spacing, places[k]});
   return out;
 }
 
@@ -142,6 +144,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
   continuation.newton.max_iterations = 20;
 
+  const Layout layout = plan(context, Sharing::meshes);
   const auto system = plant_of(context, options);
   const double state_weight = state_weight_of(options);
   solve::EquilibriumProblem problem(*system, scale, state_weight);
@@ -264,8 +267,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton,
                    film_meshes(context.machine, context.layout), law_of(context.machine, context.layout),
                    [&](const auto& cells) { return plant_of(context, options, cells); },
-                   [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); }, cut,
-                   !plan(context, Sharing::machine).large});
+                   [&](const auto& name, std::size_t n, const auto& work) {
+                     return distribute_numbers(layout, n, work, pieces, event + " " + name);
+                   },
+                   cut, !layout.large});
     });
     put_counts(b, changes.back());
     results.summary().bifurcations.push_back(b);
@@ -329,9 +334,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   conclude(results.summary(), verdict, {false, false, 1, rotor, linear}, unit);
   put_limits(results.summary(), verdict, changes, scale, si_unit, system->parameter_is_speed());
   if (end.limited)
-    put_contact(
-        results.summary(), end.parameter, unit, end.bracket, law_of(context.machine, context.layout),
-        contacts_there(context, options, *system, spread.all(), end.parameter, scale, margins, continuation.newton));
+    put_contact(results.summary(), end.parameter, unit, end.bracket, law_of(context.machine, context.layout),
+                contacts_there(context, layout, pieces, options, *system, spread.all(), end.parameter, scale, margins,
+                               continuation.newton));
   warn_of_shaft_mesh(results.summary(), context.machine, context.layout);
   missed.warn(results.summary());
   waves.warn(results.summary(), unit);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "study/bars/reduction_error.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/equilibrium/hopf_cycles.hpp"
@@ -44,9 +45,16 @@ double curvature_on(const EquilibriumEvent& at, const std::array<double, 2>& fil
   return born ? born->curvature : unknown;
 }
 
+EquilibriumEvent::Rows shared(const EquilibriumEvent& at, const std::string& name, std::size_t n,
+                              const EquilibriumEvent::Work& work) {
+  if (at.share) return at.share(name, n, work);
+  EquilibriumEvent::Rows out;
+  for (std::size_t k = 0; k < n; ++k) out.push_back(work(k));
+  return out;
+}
 std::vector<double> kept(const EquilibriumEvent& at, const std::string& name,
                          const std::function<std::vector<double>()>& work) {
-  return at.keep ? at.keep(name, work) : work();
+  return shared(at, name, 1, [&](std::size_t) { return work(); }).front();
 }
 
 // Curvature, doubt and amplitudes; empty if there are no such cycles.
@@ -167,21 +175,16 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, steps.longer) : at.found.quadratic;
   double doubt = hopf ? doubt_of_steps(lyapunov(at.system, at.x, omega, steps.shorter), here[coefficient]) : 0;
   Bars bars(here, at.law);
-  std::vector<std::vector<double>> elsewhere;
-  for (std::size_t k = 0; k < at.meshes.size(); ++k) {
-    const FilmMesh& mesh = at.meshes[k];
-    const std::vector<double>& there =
-        elsewhere.emplace_back(kept(at, fmt::format("on mesh {}", k), [&] { return numbers_on(at, mesh.factor); }));
-    bars.add(mesh.axis, mesh.spacing, there);
+  std::vector<FilmMesh> meshes = at.meshes;
+  if (hopf && at.cut) meshes.push_back(cut_shaft_mesh);
+  const EquilibriumEvent::Rows elsewhere = shared(at, "on mesh", meshes.size(), [&](std::size_t k) {
+    if (meshes[k].axis == Axis::shaft) return numbers_at(at, [&] { return located_on_cut_shaft(at); });
+    return numbers_on(at, meshes[k].factor);
+  });
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    bars.add(meshes[k].axis, meshes[k].spacing, elsewhere[k]);
     // A sign that changes with the mesh is none.
-    const double c = there.empty() ? unknown : there[coefficient];
-    if (!(c * here[coefficient] > 0)) doubt = std::max(doubt, std::abs(c - here[coefficient]));
-  }
-  if (hopf && at.cut) {
-    const auto there =
-        kept(at, "on cut shaft", [&] { return numbers_at(at, [&] { return located_on_cut_shaft(at); }); });
-    bars.add(Axis::shaft, 0.5, there);
-    const double c = there.empty() ? unknown : there[coefficient];
+    const double c = elsewhere[k].empty() ? unknown : elsewhere[k][coefficient];
     if (!(c * here[coefficient] > 0)) doubt = std::max(doubt, std::abs(c - here[coefficient]));
   }
   at.system.set_parameter(at.found.parameter * at.scale);

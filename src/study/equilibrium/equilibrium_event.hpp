@@ -43,6 +43,8 @@ struct DifferenceSteps {
 
 /// A bifurcation of equilibria that a branch found, and how to meet it on other film meshes.
 struct EquilibriumEvent {
+  using Rows = std::vector<std::vector<double>>;
+  using Work = std::function<std::vector<double>(std::size_t k)>;
   system::Plant& system;             ///< the one that is followed; left at the parameter of the event
   Vec x;                             ///< the equilibrium [SI]
   const solve::LocatedEvent& found;  ///< in the scaled parameter of the branch
@@ -53,9 +55,8 @@ struct EquilibriumEvent {
   MeshLaw law = {};
   /// The system with these cells over those of the deck.
   std::function<std::unique_ptr<system::Plant>(const std::array<double, 2>&)> make = {};
-  /// Gives the numbers of that name if they are known already, else those that `work` makes; nothing: always `work`.
-  std::function<std::vector<double>(const std::string& name, const std::function<std::vector<double>()>& work)> keep =
-      {};
+  /// Rows of that name: those that are known already, else work(k), shared between the ranks; nothing: always `work`.
+  std::function<Rows(const std::string& name, std::size_t n, const Work& work)> share = {};
   /// The system with its shaft cut into elements half as long; nothing where it has no such mesh.
   std::function<std::unique_ptr<system::Plant>()> cut = {};
   bool cycles = true;  ///< cycles may decide on the criticality: they need the whole machine on one rank

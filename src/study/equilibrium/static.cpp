@@ -15,6 +15,7 @@
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
+#include "study/pieces.hpp"
 #include "study/sense.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/deck/units.hpp"
@@ -143,15 +144,16 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
 }
 
 // The same on other film meshes, for the error bars.
-void put_bars(const Context& context, const system::RotorSystem& system, double speed, const std::vector<double>& x) {
+void put_bars(const Context& context, const Layout& layout, const system::RotorSystem& system, double speed,
+              const std::vector<double>& x) {
   SummaryBars bars(context.results.summary(), law_of(context.machine, context.layout));
-  for (const FilmMesh& mesh : film_meshes(context.machine, context.layout))
-    bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
-      system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);
-      const core::Vector at = resampled(other, system, x);
-      other.set_forcing(false);
-      if (solve::find_equilibrium(other, at.get(), {}).converged) put_values(context, other, at.get(), there);
-    });
+  Pieces pieces(context.results, context.resume);
+  bars.add(layout, pieces, film_meshes(context.machine, context.layout), [&](const FilmMesh& mesh, auto& there) {
+    system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);
+    const core::Vector at = resampled(other, system, x);
+    other.set_forcing(false);
+    if (solve::find_equilibrium(other, at.get(), {}).converged) put_values(context, other, at.get(), there);
+  });
   bars.write(1e-9);
 }
 
@@ -200,7 +202,7 @@ std::string extremes(const Values& v) {
 }  // namespace
 
 StudyResult Static::run(Context& context) {
-  const Layout layout = plan(context, Sharing::machine);
+  const Layout layout = plan(context, Sharing::meshes);
   system::RotorSystem system(layout.space, system::train_of(context.machine), options.speed.value);
   Walker walker(system);
   Vec at = nullptr;
@@ -236,7 +238,7 @@ StudyResult Static::run(Context& context) {
   else
     summary.warnings.push_back(fmt::format("{} it is not known whether the equilibrium is stable: {}", where, reason));
   // Of all that the summary holds so far: what follows has no mesh.
-  put_bars(context, system, options.speed.value, x);
+  put_bars(context, layout, system, options.speed.value, x);
   warn_of_lifted(summary);
   const auto& rotor = system.train().rotor;
   summary.set("mass.total", rotor::total_mass(rotor), "kg");

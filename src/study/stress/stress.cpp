@@ -177,11 +177,11 @@ void warn_of_margins(io::StudySummary& summary) {
 }  // namespace
 
 StudyResult Stress::run(Context& context) {
-  MPI_Comm space = plan(context, Sharing::machine).space;
+  const Layout layout = plan(context, Sharing::meshes);
   const std::string where =
       fmt::format("at {:.6g} {}", deck::from_si(options.speed.value, options.speed.unit), options.speed.unit);
   io::StudySummary& summary = context.results.summary();
-  Bent here(context.machine, space, options, {});
+  Bent here(context.machine, layout.space, options, {});
   Vec at = here.rest();
   FilmLimit(here.system().places()).warn(here.system().observe(at).film_thickness, "at rest", summary);
   if (context.machine.rotor.loss_factor == 0)  // equilibria know of none
@@ -194,10 +194,10 @@ StudyResult Stress::run(Context& context) {
     std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
     // At rest moments at nodes do not depend on the length of elements.
     if (!options.unbalance.empty() && has_shaft_mesh(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
-    for (const FilmMesh& mesh : meshes)
-      bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
-        put_stresses(there, sections, Bent(context.machine, space, options, mesh).ends(), options);
-      });
+    Pieces pieces(context.results, context.resume);
+    bars.add(layout, pieces, meshes, [&](const FilmMesh& mesh, io::StudySummary& there) {
+      put_stresses(there, sections, Bent(context.machine, layout.space, options, mesh).ends(), options);
+    });
     bars.write(1e-9);
   }
   each_worst(sections, ends, options, [&](const std::string& head, const Section& s, const BendingAt& b) {
