@@ -63,14 +63,14 @@ namespace {
 
 // One more step where Newton's method has ended just below its tolerance: damping that is a thousandth of the frequency
 // has lost as many digits more than the equilibrium. Error bars do not show it, as every mesh follows the same path.
-void polish(system::Plant& system, Vec x, solve::NewtonOptions options, solve::NewtonResult& result) {
+void polish(solve::Equilibria& equilibria, Vec x, solve::NewtonOptions options, solve::NewtonResult& result) {
   constexpr double enough = 1e-13;
   if (!result.converged || result.residual <= enough) return;
   const core::Vector before = core::duplicate(x);
   check(VecCopy(x, before.get()));
   options.tolerance = enough;
   options.max_iterations = 1;
-  const double residual = solve::find_equilibrium(system, x, options).residual;
+  const double residual = equilibria.find(x, options).residual;
   if (residual < result.residual)
     result.residual = residual;
   else
@@ -80,6 +80,11 @@ void polish(system::Plant& system, Vec x, solve::NewtonOptions options, solve::N
 }  // namespace
 
 solve::NewtonResult find_rest(system::Plant& system, Vec x) {
+  solve::Equilibria equilibria(system);
+  return find_rest(equilibria, system, x);
+}
+
+solve::NewtonResult find_rest(solve::Equilibria& equilibria, system::Plant& system, Vec x) {
   solve::NewtonOptions options;
   options.max_iterations = 30;
   const bool has_parts = problem::parts_of(system.fields()).size() > 0;
@@ -87,15 +92,15 @@ solve::NewtonResult find_rest(system::Plant& system, Vec x) {
   const core::Vector start = core::duplicate(x);
   check(VecCopy(x, start.get()));
   system.set_forcing(false);
-  auto result = solve::find_equilibrium(system, x, options);
+  auto result = equilibria.find(x, options);
   if (!result.converged && has_parts) {
     // A film that starts without its pressure (orifices) has residuals that grow before they fall: no line search lets
     // them, and whole steps get through.
     check(VecCopy(start.get(), x));
     options.searches = false;
-    result = solve::find_equilibrium(system, x, options);
+    result = equilibria.find(x, options);
   }
-  polish(system, x, options, result);
+  polish(equilibria, x, options, result);
   system.set_forcing(true);
   return result;
 }
@@ -104,7 +109,7 @@ bool Walker::attempt(double speed) {
   system_.set_parameter(speed);
   trial_ = core::duplicate(x_.get());
   check(VecCopy(x_.get(), trial_.get()));
-  const solve::NewtonResult result = find_rest(system_, trial_.get());
+  const solve::NewtonResult result = find_rest(equilibria_, system_, trial_.get());
   reason_ = result.reason;
   if (!result.converged) return false;
   std::swap(x_, trial_);

@@ -9,6 +9,7 @@
 #include "layout.hpp"
 #include "study/parameter.hpp"
 #include "whirl/solve/branch/continuation.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -23,12 +24,14 @@ namespace whirl::study {
 /// The equilibrium without forcing from the guess x, which it replaces: by whole steps where a line search ends without
 /// it, which a film that starts without its pressure needs. Collective.
 solve::NewtonResult find_rest(system::Plant& system, Vec x);
+/// The same of one of many equilibria of `system`.
+solve::NewtonResult find_rest(solve::Equilibria& equilibria, system::Plant& system, Vec x);
 
 /// Equilibria at one speed after another, each from the last one; a speed that Newton cannot reach directly is
 /// approached by halved steps.
 class Walker {
 public:
-  explicit Walker(system::Plant& system) : system_(system) {}
+  explicit Walker(system::Plant& system) : system_(system), equilibria_(system) {}
   /// The equilibrium at `speed` [rad/s]; the system is left at that speed. Collective; throws core::NotConverged.
   Vec at(double speed);
   /// Where it stands, for a resumed run to go on from.
@@ -39,6 +42,7 @@ private:
   void start_at(double speed);
   [[nodiscard]] bool walk_to(double speed);
   system::Plant& system_;
+  solve::Equilibria equilibria_;
   core::Vector x_, trial_;
   double last_ = 0;
   std::string reason_;

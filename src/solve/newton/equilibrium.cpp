@@ -32,11 +32,31 @@ EquilibriumProblem::EquilibriumProblem(problem::System& system, double parameter
   f_ = core::duplicate(x_.get());
   state_scale_ = core::duplicate(x_.get());
   residual_scale_ = core::duplicate(x_.get());
-  check(VecSet(rest_.get(), 0.0));
-  system.scales(state_scale_.get(), residual_scale_.get());
   row_scale_ = core::duplicate(x_.get());
+  check(VecSet(rest_.get(), 0.0));
+  renew(parameter_scale);
+}
+
+void EquilibriumProblem::renew(double parameter_scale) {
+  parameter_scale_ = parameter_scale;
+  system_.scales(state_scale_.get(), residual_scale_.get());
   check(VecCopy(residual_scale_.get(), row_scale_.get()));
   check(VecReciprocal(row_scale_.get()));
+  if (rows_) set_scales();
+  if (!given_up_) return;
+  exact_.reset();
+  given_up_ = false;
+}
+
+// Of the bordered matrix.
+void EquilibriumProblem::set_scales() {
+  for (const auto& [to, from] :
+       {std::pair{rows_.get(), row_scale_.get()}, std::pair{columns_.get(), state_scale_.get()}}) {
+    check(VecSet(to, 1));
+    const core::ReadArray a(from);
+    const core::WriteArray b(to);
+    std::copy_n(a.data(), a.size(), b.data());
+  }
 }
 
 EquilibriumProblem::~EquilibriumProblem() = default;
@@ -136,13 +156,7 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   prepare(u);
   if (!row_) {
     for (core::Vector* v : {&row_, &rows_, &columns_}) *v = make_unknown();
-    for (const auto& [to, from] :
-         {std::pair{rows_.get(), row_scale_.get()}, std::pair{columns_.get(), state_scale_.get()}}) {
-      check(VecSet(to, 1));
-      const core::ReadArray a(from);
-      const core::WriteArray b(to);
-      std::copy_n(a.data(), a.size(), b.data());
-    }
+    set_scales();
     hub_ = problem::hub_numbers(system_);
   }
   check(VecCopy(row, row_.get()));
@@ -205,6 +219,7 @@ void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
   if (by_inverses && std::isfinite(core::norm(x))) {
     krylov_.reset();
     ports_.reset();
+    given_up_ = true;
   }
 }
 
@@ -227,15 +242,15 @@ void EquilibriumProblem::solve(Vec rhs, Vec x) {
   solve(false, rhs, x);
 }
 
-NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options) {
-  const double parameter = system.parameter(), unit = parameter != 0 ? std::abs(parameter) : 1.0;
-  EquilibriumProblem problem(system, unit, 1);
-  core::Vector u = problem.make_unknown(), row = core::duplicate(u.get());
-  problem.from_state(x, parameter, u.get());
-  parameter_row(problem, row.get());
-  const NewtonResult result = newton(problem, u.get(), row.get(), parameter / unit, options);
-  problem.to_state(u.get(), x);
-  system.set_parameter(parameter);
+NewtonResult Equilibria::find(Vec x, const NewtonOptions& options) {
+  const double parameter = system_.parameter(), unit = parameter != 0 ? std::abs(parameter) : 1.0;
+  problem_.renew(unit);
+  core::Vector u = problem_.make_unknown(), row = core::duplicate(u.get());
+  problem_.from_state(x, parameter, u.get());
+  parameter_row(problem_, row.get());
+  const NewtonResult result = newton(problem_, u.get(), row.get(), parameter / unit, options);
+  problem_.to_state(u.get(), x);
+  system_.set_parameter(parameter);
   return result;
 }
 

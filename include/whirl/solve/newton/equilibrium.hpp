@@ -31,6 +31,8 @@ public:
   /// state in the arclength.
   EquilibriumProblem(problem::System& system, double parameter_scale, double state_weight);
   ~EquilibriumProblem() override;
+  /// As if it were made now, with this scale; what the pattern of the matrix alone decides is kept.
+  void renew(double parameter_scale);
 
   [[nodiscard]] MPI_Comm comm() const override { return system_.comm(); }
   [[nodiscard]] core::Vector make_unknown() const override;
@@ -61,6 +63,7 @@ private:
   /// The entries of the bordered matrix at x_, not scaled: dF/dp is f_.
   void list();
   void fill_bordered();
+  void set_scales();
   /// Why it did not come far enough; empty if it did. The same on all ranks.
   [[nodiscard]] std::string solve_by_inverses(Vec rhs, Vec x);
   void solve_by_parts(bool transposed, Vec rhs, Vec x);
@@ -76,9 +79,25 @@ private:
   std::unique_ptr<PortElimination> ports_, exact_;      // by approximate inverses while these serve; by MUMPS
   std::unique_ptr<PortKrylov> krylov_;                  // around `ports_`
   bool factorised_ = false, exact_factorised_ = false;  // `ports_`, `exact_`: of the present matrix
+  bool given_up_ = false;                               // inverses that have failed
 };
 
-/// Solves F(0, x, 0) = 0 at the system's parameter from the guess in x. Collective.
-NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options);
+/// Equilibria of one system at one parameter after another.
+class Equilibria {
+public:
+  explicit Equilibria(problem::System& system) : system_(system), problem_(system, 1, 1) {}
+  /// Solves F(0, x, 0) = 0 at the system's parameter from the guess in x. Collective.
+  NewtonResult find(Vec x, const NewtonOptions& options);
+  [[nodiscard]] problem::System& system() const { return system_; }
+
+private:
+  problem::System& system_;
+  EquilibriumProblem problem_;
+};
+
+/// The same of one.
+inline NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options) {
+  return Equilibria(system).find(x, options);
+}
 
 }  // namespace whirl::solve
