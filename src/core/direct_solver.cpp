@@ -2,12 +2,13 @@
 
 namespace whirl::core {
 
-void make_direct(KSP ksp) {
+void make_direct(KSP ksp, PetscInt unknowns) {
   PC pc = nullptr;
+  const bool few = unknowns <= most_by_klu && size_of(PetscObjectComm(reinterpret_cast<PetscObject>(ksp))) == 1;
   check(KSPSetType(ksp, KSPPREONLY));
   check(KSPGetPC(ksp, &pc));
   check(PCSetType(pc, PCLU));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check(PCFactorSetMatSolverType(pc, few ? MATSOLVERKLU : MATSOLVERMUMPS));
 }
 
 LinearSolver make_direct_solver(MPI_Comm comm, const char* prefix) {

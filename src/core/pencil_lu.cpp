@@ -15,7 +15,7 @@ template <class Scalar>
 PencilLu<Scalar>::PencilLu(MPI_Comm comm, PetscInt rows, std::vector<Place> a, std::vector<Place> b, const char* prefix)
     : comm_(comm),
       rows_(rows),
-      alone_(size_of(comm) == 1 && width * rows <= most_by_lu),
+      alone_(size_of(comm) == 1 && width * rows <= most_by_klu),
       a_(std::move(a)),
       b_(std::move(b)) {
   if (alone_) {

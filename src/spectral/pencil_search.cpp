@@ -117,7 +117,7 @@ void search_near(EPS eps, Mat a, double target, PetscInt wanted, InverseShell* s
   if (shell)
     shell->serve(ksp);
   else
-    core::make_direct(ksp);
+    core::make_direct(ksp, n);
   // The same start vector on any number of ranks.
   core::Vector start;
   check(MatCreateVecs(a, start.put(), nullptr));

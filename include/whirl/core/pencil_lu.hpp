@@ -31,8 +31,6 @@ public:
 
 private:
   static constexpr PetscInt width = sizeof(Scalar) / sizeof(double);
-  // Nested dissection, which Eigen has not, wins beyond.
-  static constexpr PetscInt most_by_lu = 20000;
   using Columns = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   void add(Place p, double value) { stream_.add(p.row, p.column, value); }
   void add(Place p, std::complex<double> value);

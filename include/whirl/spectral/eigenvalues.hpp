@@ -56,7 +56,7 @@ struct EigenOptions {
   bool shapes = true;
   bool rounding = false;            ///< estimate Mode::rounding
   bool left = false;                ///< left vectors, condition numbers and multiplicities
-  ShiftInverse* inverse = nullptr;  ///< of systems above dense_below; null: LU by MUMPS
+  ShiftInverse* inverse = nullptr;  ///< of systems above dense_below; null: core::make_direct()
 };
 
 /// Modes of dF/dx u + lambda dF/d(dx/dt) u = 0 at the equilibrium x, sorted by ascending |imag|, then real part.

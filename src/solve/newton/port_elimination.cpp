@@ -48,7 +48,6 @@ PortElimination::PortElimination(std::vector<problem::Field> fields, std::unique
 
 void PortElimination::make_solvers() {
   const MPI_Comm comm = layout_->comm();
-  PC pc = nullptr;
   PetscBool once = PETSC_FALSE;
   all_hub_.setZero(layout_->whole_hub() + 1);
   of_parts_.setZero(layout_->parts(), 1);
@@ -71,11 +70,7 @@ void PortElimination::make_solvers() {
   hub_answer_ = core::duplicate(hub_rhs_.get());
   check(KSPCreate(hub_comm, hub_solver_.put()));
   check(KSPSetOptionsPrefix(hub_solver_.get(), "hub_"));
-  core::make_direct(hub_solver_.get());
-  if (hub_alone_) {
-    check(KSPGetPC(hub_solver_.get(), &pc));
-    check(PCFactorSetMatSolverType(pc, MATSOLVERKLU));
-  }
+  core::make_direct(hub_solver_.get(), layout_->whole_hub());
   check(KSPSetFromOptions(hub_solver_.get()));
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(hub_solver_.get()), KSPPREONLY, &once));
   hub_once_ = once && hub_alone_;

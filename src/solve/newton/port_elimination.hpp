@@ -18,9 +18,9 @@ namespace whirl::solve {
 ///
 /// A_pp^-1 are the parts' own inverses, or PartFactors. What is left on the hub is solved by a KSP with prefix "hub_":
 /// by KLU on the rank that holds most of it, to which the others lend their rows, such as a border's, and by MUMPS
-/// where it is spread. With approximate inverses all of it is a preconditioner. A_pp has to be regular: films at given
-/// motions are. Without parts all is hub. factorise() and the solves throw core::NotConverged, on all ranks, if a
-/// matrix is singular. All members are collective on the communicator of the matrix.
+/// where it is spread or large. With approximate inverses all of it is a preconditioner. A_pp has to be regular: films
+/// at given motions are. Without parts all is hub. factorise() and the solves throw core::NotConverged, on all ranks,
+/// if a matrix is singular. All members are collective on the communicator of the matrix.
 class PortElimination {
 public:
   /// `fields`: the hub first, in local rows of the matrices to come; local rows in none of them belong to the hub.
