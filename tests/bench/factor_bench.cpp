@@ -7,7 +7,7 @@
 #include "bench/pad.hpp"
 #include "bench/ways.hpp"
 #include "film/algebra/film_matrix.hpp"
-#include "film/algebra/lines.hpp"
+#include "film/algebra/line_solver.hpp"
 #include "solve/cycle/pencil.hpp"
 #include "solve/cycle/time_modes.hpp"
 #include "support/train_system.hpp"

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "film/algebra/lines.hpp"
+#include "film/algebra/line_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/plan.hpp"
 
