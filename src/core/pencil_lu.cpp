@@ -11,13 +11,21 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::Map;
 
+namespace {
+
+// Of the solution that a band is tried on: its exchanges of rows begin here; of entries of a matrix that is the same.
+constexpr double digits_lost = 1e-11, same = 1e-12;
+
+}  // namespace
+
 template <class Scalar>
 PencilLu<Scalar>::PencilLu(MPI_Comm comm, PetscInt rows, std::vector<Place> a, std::vector<Place> b, const char* prefix)
-    : comm_(comm),
-      rows_(rows),
-      alone_(size_of(comm) == 1 && width * rows <= most_by_klu),
-      a_(std::move(a)),
-      b_(std::move(b)) {
+    : comm_(comm), rows_(rows), alone_(size_of(comm) == 1), a_(std::move(a)), b_(std::move(b)) {
+  PetscInt reach = 0;
+  for (const auto* places : {&a_, &b_})
+    for (const Place& p : *places) reach = std::max(reach, std::abs(p.row - p.column));
+  const bool narrow = rows > 0 && BandLu::pays(rows, reach);
+  alone_ = alone_ && (narrow || width * rows <= most_by_klu);
   if (alone_) {
     std::vector<Eigen::Triplet<Scalar>> entries;
     for (const auto* places : {&a_, &b_})
@@ -31,7 +39,9 @@ PencilLu<Scalar>::PencilLu(MPI_Comm comm, PetscInt rows, std::vector<Place> a, s
         const auto* const found = std::lower_bound(first + column[0], first + column[1], p.row);
         (rates ? in_b_ : in_a_).push_back(found - first);
       }
-    lu_.analyse(matrix_);
+    if constexpr (width == 1)
+      if (narrow) band_.emplace(matrix_, Eigen::VectorXd(), digits_lost);
+    if (!band_) lu_.analyse(matrix_);
     return;
   }
   PetscInt all = width * rows, begin = 0;
@@ -61,11 +71,16 @@ void PencilLu<Scalar>::add(Place p, Complex value) {
 template <class Scalar>
 void PencilLu<Scalar>::set(std::span<const double> a, std::span<const double> b, double alpha, Scalar sigma) {
   if (alone_) {
-    Scalar* const values = matrix_.valuePtr();
-    std::fill(values, values + matrix_.nonZeros(), Scalar(0));
+    using Values = Eigen::Array<Scalar, Eigen::Dynamic, 1>;
+    Values values = Values::Zero(matrix_.nonZeros());
     for (std::size_t k = 0; k < in_a_.size(); ++k) values[in_a_[k]] += alpha * a[k];
     for (std::size_t k = 0; k < in_b_.size(); ++k) values[in_b_[k]] += sigma * b[k];
-    regular_ = lu_.factorise(matrix_);
+    Map<Values> known(matrix_.valuePtr(), values.size());
+    if (regular_ && ((known - values).abs() <= same * values.abs()).all()) return;
+    known = values;
+    if constexpr (width == 1)
+      if (band_) regular_ = band_->factor(matrix_);
+    if (!band_) regular_ = lu_.factorise(matrix_);
     return;
   }
   check(MatZeroEntries(spread_.get()));
@@ -90,6 +105,8 @@ void PencilLu<Scalar>::solve(bool adjoint, std::span<const Scalar> r, std::span<
   }
   if (!alone_) return solve_spread(adjoint, r, x);
   const Index columns = static_cast<Index>(r.size()) / std::max<Index>(rows_, 1);
+  if constexpr (width == 1)
+    if (band_) return band_->solve(adjoint, r.data(), x.data(), columns);
   if (!adjoint) return lu_.solve(r.data(), x.data(), columns);
   const Columns conjugate = Map<const Columns>(r.data(), rows_, columns).conjugate();
   Map<Columns>(x.data(), rows_, columns) = lu_.solve_transposed(conjugate).conjugate();

@@ -4,8 +4,8 @@
 #include <complex>
 #include <span>
 
-#include "direct_inverse.hpp"
 #include "film_comms.hpp"
+#include "whirl/film/algebra/direct_inverse.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::system {
@@ -97,7 +97,7 @@ RotorSystem::FilmInverses::FilmInverses(RotorSystem& s) : system_(s), comms_(s.f
   if (!offered_) return;
   for (Film& film : films_) {
     if (!film.inverse)
-      film.inverse = make_direct_inverse(comms_->of(film.bearing), s.bearings_[film.bearing].part->share());
+      film.inverse = film::make_direct_inverse(comms_->of(film.bearing), s.bearings_[film.bearing].part->share());
     exact_ = exact_ && film.inverse->exact() != nullptr;
   }
   MPI_Allreduce(MPI_IN_PLACE, &exact_, 1, MPI_CXX_BOOL, MPI_LAND, s.comm_);

@@ -184,7 +184,7 @@ void film_states(const std::string& what, std::unique_ptr<film::Film> made, cons
   };
   core::LinearSolver krylov;
   if (dynamic_cast<film::ExactStateInverse*>(inverse.get()))
-    ways.push_back(by("StripInverse", inverse, a, b, set, [&](auto& i, const MatrixXd& y) {
+    ways.push_back(by("DirectInverse", inverse, a, b, set, [&](auto& i, const MatrixXd& y) {
       MatrixXd x(y.rows(), y.cols());
       i.apply(core::span_of(y), core::span_of(x));
       return x;
@@ -228,7 +228,7 @@ void films() {
   content.states = film::Reynolds::States::dynamic;
   for (const int m : {1, 4}) {
     content.cells = {60 * m, 16 * m};
-    film_states(fmt::format("StripInverse, pad that conserves its mass, {} x {}", 60 * m, 16 * m),
+    film_states(fmt::format("DirectInverse, pad that conserves its mass, {} x {}", 60 * m, 16 * m),
                 make_film(bench::one_pad(), content, {0.0067, 850.0}), bench::loaded(false), 1, 2900, true);
   }
   const film::Geometry bore{film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};

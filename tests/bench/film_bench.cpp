@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bench/pad.hpp"
-#include "film/algebra/band_lu.hpp"
 #include "film/algebra/film_matrix.hpp"
 #include "film/use/condensed.hpp"
 #include "support/film_of.hpp"
@@ -157,7 +156,7 @@ double linear_solve_time(int layers) {
   FilmMatrix<double> matrix(film->whole(), film->whole().d_states);
   Eigen::VectorXd units(static_cast<Eigen::Index>(states.size()));
   for (const StateField& f : film->state_fields()) f.each([&](int k) { units(k) = f.scale; });
-  BandLu band(matrix.pattern(), units);
+  core::BandLu band(matrix.pattern(), units);
   StateResponse r;
   double least = 1e9;
   for (int run = 0; run < 10; ++run) {

@@ -12,8 +12,8 @@
 
 #include "bench/timing.hpp"
 #include "film/algebra/band.hpp"
-#include "film/algebra/band_lu.hpp"
 #include "film/algebra/general_band.hpp"
+#include "whirl/core/band_lu.hpp"
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/index.hpp"
 #include "whirl/core/inverse.hpp"
@@ -95,7 +95,7 @@ inline MatrixXd sides(Index n, Index count) {
 }
 
 inline int bandwidth(const Sparse& a) {
-  return film::BandLu::bandwidth(a);
+  return core::BandLu::bandwidth(a);
 }
 
 /// Pads ask for the pressure first, then for four adjoints, of matrices that are not symmetric by the transpose.
@@ -223,8 +223,8 @@ inline Way sparse_lu(const Sparse& a, const MatrixXd& b) {
 }
 inline Way band_lu(const Sparse& a, const MatrixXd& b) {
   return by(
-      "BandLu", std::make_shared<film::BandLu>(a), a, b, [](auto& l, const auto& m) { (void)l.factor(m); },
-      [](const auto& l, const auto& y) { return l.solve_all(y); });
+      "BandLu", std::make_shared<core::BandLu>(a), a, b, [](auto& l, const auto& m) { (void)l.factor(m); },
+      [](const auto& l, const auto& y) { return l.solve(y); });
 }
 inline Way dense_lu(const MatrixXd& a, const MatrixXd& b) {
   return by(

@@ -25,7 +25,7 @@ text = {str(p.relative_to(root)): p.read_text() for p in files}
 
 # Stems of files, wherever they stand: a file that moves stays in the list, one that ends leaves it.
 ALGEBRA = """
-band band_lu general_band column_chain strip_inverse line_solver ring_preconditioner gas_inverse lent_lu film_matrix stencil pack
+band band_lu general_band line_solver ring_preconditioner gas_inverse lent_lu film_matrix stencil pack
 direct_inverse film_inverse
 part_factors frequency_hub frequency_inverse frequency_linearise frequency_part frequency_resolvent frequency_transfer
 port_elimination port_krylov port_layout port_maker port_matrix matrix_rows thin local_part stored spread_point rational_fit

@@ -3,28 +3,35 @@
 
 #include <Eigen/SparseCore>
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "whirl/core/band_lu.hpp"
 #include "whirl/core/entry_stream.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/core/pivoted_lu.hpp"
 
 namespace whirl::core {
 
+/// Where an entry stands, by numbers in the whole matrix.
+struct PencilPlace {
+  PetscInt row, column;
+};
+
 /// A = alpha a + sigma b, whose rows stand on the ranks of a communicator in their order. On one rank the factors are
-/// PivotedLu's, up to a size. Else they are MUMPS's, for complex numbers in real form, p + i q as the block [p -q; q
-/// p]. Scalar: double or std::complex<double>. Collective on the communicator.
+/// BandLu's of a real matrix whose band pays, else PivotedLu's, without such a band up to a size. Else they are
+/// MUMPS's, for complex numbers in real form, p + i q as the block [p -q; q p]. Scalar: double or std::complex<double>.
+/// Collective on the communicator.
 template <class Scalar>
 class PencilLu {
 public:
-  struct Place {
-    PetscInt row, column;  ///< numbers in the matrix
-  };
+  using Place = PencilPlace;
   /// This rank has `rows` rows with entries of a and b at these places; entries of one place add up. MUMPS reads PETSc
   /// options with `prefix` if there is one.
   PencilLu(MPI_Comm comm, PetscInt rows, std::vector<Place> a, std::vector<Place> b, const char* prefix = nullptr);
-  /// Factorises, with the entries of a and b in the order of their places.
+  /// Factorises, with the entries of a and b in the order of their places. On one rank factors stay that are those of
+  /// the same values, to rounding (1e-12 of each).
   void set(std::span<const double> a, std::span<const double> b, double alpha, Scalar sigma);
   /// x = A^-1 r, or A^-* r (conjugate transpose), of this rank's [rows x columns]. Not finite if A is singular.
   void solve(bool adjoint, std::span<const Scalar> r, std::span<Scalar> x);
@@ -42,6 +49,7 @@ private:
   std::vector<Place> a_, b_;
   Eigen::SparseMatrix<Scalar> matrix_;     // on one rank
   std::vector<Eigen::Index> in_a_, in_b_;  // where entries stand in its values
+  std::optional<BandLu> band_;             // or
   PivotedLu<Scalar> lu_;
   Matrix spread_;  // on several
   EntryStream stream_;

@@ -3,10 +3,10 @@
 #include <array>
 #include <limits>
 
-#include "film/algebra/strip_inverse.hpp"
 #include "film/sheet/content_pad.hpp"
 #include "film/sheet/report.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/algebra/direct_inverse.hpp"
 #include "whirl/film/sheet/thickness.hpp"
 
 namespace whirl::film {
@@ -45,11 +45,7 @@ public:
   }
   [[nodiscard]] Share share(int begin, int end) const override { return lay_out(begin, end).share; }
   [[nodiscard]] std::unique_ptr<StateInverse> inverse(MPI_Comm comm, const Share& share) const override {
-    const int line = solvers_.front()->column();
-    std::vector<StripInverse::Extent> strips;
-    for (std::size_t n = 0; n < pads_.size(); ++n)
-      strips.push_back({static_cast<int>(first_[n]), static_cast<int>(solvers_[n]->states()) / line});
-    return std::make_unique<StripInverse>(comm, share, line, strips, latest_);
+    return make_direct_inverse(comm, share);
   }
 
   void evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
@@ -143,7 +139,6 @@ private:
   std::vector<std::size_t> first_;  // state of each pad
   std::size_t states_ = 0;
   Layout at_hand_;  // of the share that was evaluated last
-  std::shared_ptr<StripInverse::Latest> latest_ = StripInverse::nothing_yet();
 };
 
 }  // namespace

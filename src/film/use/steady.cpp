@@ -32,9 +32,9 @@ Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_s
       scale_(k) = f.scale;
       row_weight_(k) = fields.front().row_scale() / f.row_scale();
     });
-  if (BandLu::pays(matrix_.pattern())) band_.emplace(matrix_.pattern(), scale_);
+  if (core::BandLu::pays(matrix_.pattern())) band_.emplace(matrix_.pattern(), scale_);
   // Measured with bands of 20 and 90.
-  price_ = band_ ? 1.0 + BandLu::bandwidth(matrix_.pattern()) / 16.0 : 12.0;
+  price_ = band_ ? 1.0 + core::BandLu::bandwidth(matrix_.pattern()) / 16.0 : 12.0;
 }
 
 // Not where dg/ds is what it was: a film that is linear but for the set of its full nodes keeps its factors with the
@@ -210,7 +210,7 @@ const StateResponse& Steady::tangents() {
 Eigen::MatrixXd Steady::refined(const Eigen::MatrixXd& b, bool transposed) {
   constexpr double exact = 1e-12, forces = 2.0, too_slow = 0.2;
   const auto solved = [&](const Eigen::MatrixXd& r) -> Eigen::MatrixXd {
-    if (band_) return transposed ? band_->solve_transposed(r) : band_->solve_all(r);
+    if (band_) return transposed ? band_->solve_transposed(r) : band_->solve(r);
     if (transposed) return lu_->solve_transposed(r);
     return lu_->solve(r);
   };

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "film/algebra/band_lu.hpp"
 #include "film/algebra/film_matrix.hpp"
 #include "film/use/lent_lu.hpp"
+#include "whirl/core/band_lu.hpp"
 #include "whirl/film/contract/film.hpp"
 
 namespace whirl::film {
@@ -73,7 +73,7 @@ private:
   const StateResponse* at_ = &here_;     // of both, that of now_
   FilmMatrix<double> matrix_;
   // One of both.
-  std::optional<BandLu> band_;
+  std::optional<core::BandLu> band_;
   LentLu lu_;
   std::vector<double> factored_;  // dg/ds that the factors belong to; empty: there are none
   Eigen::VectorXd factored_at_;   // states that they are of

@@ -1,12 +1,12 @@
 // LU of a band against a sparse LU, with rows of several units.
-#include "film/algebra/band_lu.hpp"
+#include "whirl/core/band_lu.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseLU>
 #include <cmath>
 
-namespace whirl::film::testing {
+namespace whirl::core::testing {
 namespace {
 
 // Five points of a mesh, `line` nodes in a column; every other row in units a million times larger. Weak diagonals make
@@ -80,4 +80,4 @@ TEST(BandLu, IsNotForRings) {
   EXPECT_FALSE(BandLu::pays(a));
 }
 
-}  // namespace whirl::film::testing
+}  // namespace whirl::core::testing

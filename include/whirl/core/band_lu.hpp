@@ -5,31 +5,39 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "whirl/core/pivoted_band.hpp"
+#include "whirl/core/pivoted_lu.hpp"
 
-namespace whirl::film {
+namespace whirl::core {
 
 /// D A U = L R of matrices of one pattern, U the units of the unknowns, D such that the largest entry of each row is
 /// one: films have several units. Rows are not exchanged; in a film that costs some digits where it stands still. How
-/// many is tried on a solution that is known: where fewer than seven are left rows are exchanged (core::PivotedBand).
-/// Cost for n states of bandwidth w on either side: 2 n w^2 operations to factorise, 4 n w to solve, 2 n w numbers to
-/// hold; twice as much with exchanges.
+/// many is tried on a solution that is known: where it is off by more than `most` PivotedLu takes the matrix. Cost for
+/// n states of bandwidth w on either side: 2 n w^2 operations to factorise, 4 n w to solve, 2 n w numbers to hold.
 class BandLu {
 public:
   using Sparse = Eigen::SparseMatrix<double>;
   /// `units` [n] are what the unknowns are measured in, so that entries of a row can be compared; one if empty.
-  explicit BandLu(const Sparse& pattern, Eigen::VectorXd units = {});
+  explicit BandLu(const Sparse& pattern, Eigen::VectorXd units = {}, double most = 1e-7);
   /// Largest distance of an entry from the diagonal.
   [[nodiscard]] static int bandwidth(const Sparse& pattern);
-  /// Whether this costs less than a sparse LU of a mesh in two directions, by counts.
-  [[nodiscard]] static bool pays(const Sparse& pattern);
+  /// Whether this costs less than a sparse LU of a mesh in two directions, by counts of states and their bandwidth.
+  [[nodiscard]] static bool pays(double states, double width);
+  [[nodiscard]] static bool pays(const Sparse& pattern) {
+    return pays(static_cast<double>(pattern.rows()), bandwidth(pattern));
+  }
   /// Of a matrix with that pattern; false if it is singular.
   [[nodiscard]] bool factor(const Sparse& a);
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
-  /// Of each column of b [n x any]; two at a time cost little more than one.
-  [[nodiscard]] Eigen::MatrixXd solve_all(const Eigen::MatrixXd& b) const;
-  /// Of each column of b [n x any]; two at a time cost little more than one.
-  [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const;
+  /// A^-1 y and A^-T y of a vector or of all columns; two at a time cost little more than one.
+  template <class Y>
+  [[nodiscard]] typename Y::PlainObject solve(const Eigen::MatrixBase<Y>& y) const {
+    return answer(false, y.derived().eval());
+  }
+  template <class Y>
+  [[nodiscard]] typename Y::PlainObject solve_transposed(const Eigen::MatrixBase<Y>& y) const {
+    return answer(true, y.derived().eval());
+  }
+  /// x = A^-1 y or A^-T y of n x columns numbers each, which do not overlap.
+  void solve(bool transposed, const double* y, double* x, Eigen::Index columns) const;
   /// The largest relative error of the solution that was tried.
   [[nodiscard]] double loss() const { return loss_; }
   /// Whether the last factors needed exchanges of rows.
@@ -40,11 +48,16 @@ private:
   void factor_as_it_stands(const Sparse& a);
   template <int Vectors, class LayOut>
   void eliminate(const LayOut& lay_out);
-  [[nodiscard]] bool factor_with_exchanges(const Sparse& a);
   template <int Sides>
-  void direct(const double* b, double* to) const;
+  void substitute(const double* b, double* to) const;
   template <int Sides>
-  void transposed(const double* b, double* to) const;
+  void substitute_transposed(const double* b, double* to) const;
+  template <class Plain>
+  [[nodiscard]] Plain answer(bool transposed, const Plain& y) const {
+    Plain x(y.rows(), y.cols());
+    solve(transposed, y.data(), x.data(), y.cols());
+    return x;
+  }
   [[nodiscard]] double* column(int k) { return band_.data() + first(k); }
   [[nodiscard]] const double* column(int k) const { return band_.data() + first(k); }
   [[nodiscard]] std::ptrdiff_t first(int k) const { return static_cast<std::ptrdiff_t>(k) * stride_ + 8 + width_ - k; }
@@ -56,9 +69,9 @@ private:
   std::vector<double> band_;
   std::vector<double> panel_;  // L of four columns at once
   bool exchanged_ = false;
-  double loss_ = 0;
-  core::PivotedBand pivoted_;
+  double most_, loss_ = 0;
+  PivotedLu<double> pivoted_;
   Eigen::VectorXd units_, scale_;  // D
 };
 
-}  // namespace whirl::film
+}  // namespace whirl::core

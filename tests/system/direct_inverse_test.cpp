@@ -1,19 +1,21 @@
-// Exact inverses of films, wherever ranks cut them: that of films in strips of columns, and that of films without one.
-#include "film/algebra/strip_inverse.hpp"
+// Exact inverses of films, wherever ranks cut them: of films whose states form a band, and of others.
+#include "whirl/film/algebra/direct_inverse.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "film/content_cases.hpp"
-#include "system/direct_inverse.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::film::testing {
 namespace {
 
-struct Case : ContentCase {
-  bool direct;  // not by its own inverse
+struct Case {
+  std::string name;
+  Geometry geometry;
+  Options options;
+  std::array<double, 4> position;
 };
 
 // A film on all ranks, part of it empty, with its inverse and its derivatives as one rank sees them.
@@ -24,10 +26,11 @@ struct Shared {
                rank = core::rank_of(MPI_COMM_WORLD);
     share = film->share(film->cut(n * rank / ranks), film->cut(n * (rank + 1) / ranks));
     std::vector<double> q = settled(*film, m), rest(q.size(), 0.0);
-    for (std::size_t k = 0; k < q.size(); k += 7) q[k] = -1e-6;  // holes in the full film
+    if (film->whole_steps())
+      for (std::size_t k = 0; k < q.size(); k += 7) q[k] = -1e-6;  // holes in the full film
     film->evaluate(m, q, rest, Need::tangents, whole);
     film->evaluate(m, share, seen_of(share, q), seen_of(share, rest), Need::tangents, here);
-    inverse = c.direct ? system::make_direct_inverse(MPI_COMM_WORLD, share) : film->inverse(MPI_COMM_WORLD, share);
+    inverse = film->whole_steps() ? film->inverse(MPI_COMM_WORLD, share) : make_direct_inverse(MPI_COMM_WORLD, share);
   }
   std::unique_ptr<Film> film;
   Share share;
@@ -35,9 +38,9 @@ struct Shared {
   std::unique_ptr<StateInverse> inverse;
 };
 
-class Strips : public ::testing::TestWithParam<Case> {};
+class Films : public ::testing::TestWithParam<Case> {};
 
-TEST_P(Strips, AreSolvedExactly) {
+TEST_P(Films, AreSolvedExactly) {
   Shared s(GetParam());
   ASSERT_NE(s.inverse->exact(), nullptr);
   const auto n = static_cast<Eigen::Index>(s.film->states());
@@ -63,7 +66,7 @@ TEST_P(Strips, AreSolvedExactly) {
   }
 }
 
-TEST_P(Strips, AreSolvedAtComplexFrequencies) {
+TEST_P(Films, AreSolvedAtComplexFrequencies) {
   Shared s(GetParam());
   using Complex = std::complex<double>;
   const Complex lambda(-30, 200);
@@ -71,8 +74,9 @@ TEST_P(Strips, AreSolvedAtComplexFrequencies) {
   Eigen::MatrixXcd b(n, 2);
   for (Eigen::Index k = 0; k < n; ++k)
     b.row(k) << std::polar(1.0, 0.37 * static_cast<double>(k * (k + 1))), std::polar(0.5, 1.1 * static_cast<double>(k));
-  Eigen::SparseMatrix<Complex> a = matrix_of(*s.film, s.whole, 0).cast<Complex>();
-  for (Eigen::Index k = 0; k < n; ++k) a.coeffRef(k, k) += lambda;
+  const Eigen::SparseMatrix<double> still = matrix_of(*s.film, s.whole, 0), moving = matrix_of(*s.film, s.whole, 1);
+  const Eigen::SparseMatrix<Complex> a =
+      (1.0 - lambda) * still.cast<Complex>() + lambda * Eigen::SparseMatrix<Complex>(moving.cast<Complex>());
   const Eigen::MatrixXcd exact = Eigen::SparseLU<Eigen::SparseMatrix<Complex>>(a).solve(b);
   const Eigen::Index rows = s.share.rows();
   const Eigen::MatrixXcd here = b.middleRows(s.share.begin, rows);
@@ -86,53 +90,31 @@ TEST_P(Strips, AreSolvedAtComplexFrequencies) {
               1e-9 * exact.col(c).lpNorm<Eigen::Infinity>());
 }
 
-// All content films, and one of three columns: on three ranks cuts stand side by side and behind the last column.
-std::vector<Case> strips() {
-  std::vector<ContentCase> films = content_films();
-  films.push_back({"three_columns", arc(), dynamic({4, 6}), {0.2, -0.6, 0.1, 0.1}, {}});
+// All content films; one of three columns, for three ranks; and one in a ring, whose band does not pay.
+std::vector<Case> films() {
   std::vector<Case> out;
-  for (const bool direct : {false, true})
-    for (const ContentCase& c : films) {
-      out.push_back({c, direct});
-      if (direct) out.back().name += "_direct";
-    }
+  for (const ContentCase& c : content_films()) out.push_back({c.name, c.geometry, c.options, c.position});
+  out.push_back({"three_columns", arc(), dynamic({4, 6}), {0.2, -0.6, 0.1, 0.1}});
+  CompliantFinite liner;
+  liner.cells = {40, 8};
+  liner.compliance = 0.1;
+  liner.reference_speed = 300.0;
+  out.push_back({"liner", cylinder(), liner, {0.3, -0.5, 0.0, 0.0}});
   return out;
 }
 
-INSTANTIATE_TEST_SUITE_P(Films, Strips, ::testing::ValuesIn(strips()),
+INSTANTIATE_TEST_SUITE_P(Direct, Films, ::testing::ValuesIn(films()),
                          [](const auto& which) { return which.param.name; });
 
-// What settled a film has factorised what Newton's method asks for next.
-TEST(StripInverses, ShareTheirFactors) {
-  Shared s({content_films().front(), false});
-  const auto second = s.film->inverse(MPI_COMM_WORLD, s.share);
-  const auto made = [](const std::unique_ptr<StateInverse>& i) {
-    return dynamic_cast<const StripInverse&>(*i).factorisations();
-  };
-  s.inverse->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
-  s.inverse->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
-  second->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
-  EXPECT_EQ(made(s.inverse), 1);
-  EXPECT_EQ(made(second), 0);
-  // Factors that another one holds stay what they are.
-  const std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0);
-  std::vector<double> before(r.size()), after(r.size());
-  s.inverse->apply(r, before);
-  second->set({s.here.d_states, s.here.d_rates}, 1.0, 50.0);
-  EXPECT_EQ(made(second), 1);
-  s.inverse->apply(r, after);
-  EXPECT_EQ(before, after);
-}
-
 // A cavity at rest keeps what it holds: nothing says how much.
-TEST(StripInverses, OfSingularFilmsAreNotFinite) {
-  for (const bool direct : {false, true}) {
-    Shared s({content_films().front(), direct});
+TEST(DirectInverse, OfASingularFilmIsNotFinite) {
+  for (const Case& c : {films().front(), films().back()}) {
+    Shared s(c);
     std::fill(s.here.d_states.begin(), s.here.d_states.end(), 0.0);
     s.inverse->set({s.here.d_states, s.here.d_rates}, 1.0, 0.0);
     std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0), x(r.size(), 0.0);
     s.inverse->apply(r, x);
-    for (const double v : x) EXPECT_FALSE(std::isfinite(v)) << direct;
+    for (const double v : x) EXPECT_FALSE(std::isfinite(v)) << c.name;
   }
 }
 

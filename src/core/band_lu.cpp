@@ -1,4 +1,4 @@
-#include "film/algebra/band_lu.hpp"
+#include "whirl/core/band_lu.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <cstring>
 #include <utility>
 
-#include "film/algebra/pack.hpp"
+namespace whirl::core {
 
-namespace whirl::film {
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 int BandLu::bandwidth(const Sparse& pattern) {
   int width = 0;
@@ -21,26 +21,26 @@ int BandLu::bandwidth(const Sparse& pattern) {
 
 // Nested dissection of n states takes some 30 n^1.5 operations, which are several times slower one by one than those of
 // a band side by side.
-bool BandLu::pays(const Sparse& pattern) {
+bool BandLu::pays(double states, double width) {
   constexpr double slower = 8.0;
-  const double n = static_cast<double>(pattern.rows()), w = bandwidth(pattern);
-  return 2.0 * n * w * w <= slower * 30.0 * n * std::sqrt(n);
+  return 2.0 * width * width <= slower * 30.0 * std::sqrt(states);
 }
 
 namespace {
 
 constexpr int at_once = 4;  // columns that are taken off the rest together: it is read and written once for them
 constexpr int lanes = 8;    // rows of these side by side, in an Eight
-constexpr double lost = 1e-7;
 
-using Eight = Pack::Vector;
+typedef double Eight __attribute__((vector_size(8 * lanes)));
 
 int whole(int n, int of) {
   return (n + of - 1) / of * of;
 }
 
 Eight at(const double* from) {
-  return Pack::load(from).v;
+  Eight x;
+  std::memcpy(&x, from, sizeof x);
+  return x;
 }
 void put(double* to, const Eight& value) {
   std::memcpy(to, &value, sizeof value);
@@ -50,16 +50,20 @@ Eight spread(const Eight& x, int lane) {
   const double y = x[lane];
   return Eight{y, y, y, y, y, y, y, y};
 }
+double sum(const Eight& x) {
+  return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
+}
 constexpr Eight lane_number = {0, 1, 2, 3, 4, 5, 6, 7};
 
 }  // namespace
 
-BandLu::BandLu(const Sparse& pattern, Eigen::VectorXd units)
+BandLu::BandLu(const Sparse& pattern, VectorXd units, double most)
     : size_(static_cast<int>(pattern.rows())),
       width_(std::max(bandwidth(pattern), at_once)),
       height_(whole(width_, lanes)),
       stride_(whole(2 * width_ + 1 + 2 * lanes, lanes)),
-      units_(units.size() == 0 ? Eigen::VectorXd::Ones(size_) : std::move(units)),
+      most_(most),
+      units_(units.size() == 0 ? VectorXd::Ones(size_) : std::move(units)),
       scale_(size_) {
   // Zeros before the first column and behind those that the last of them reach.
   band_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(size_ + width_ + 2 * at_once) + lanes);
@@ -80,12 +84,14 @@ bool BandLu::factor(const Sparse& a) {
   if (!scale_rows(a)) return false;
   exchanged_ = false;
   factor_as_it_stands(a);
-  const Eigen::VectorXd image = a * units_;
+  const VectorXd image = a * units_;
   loss_ = (solve(image) - units_).cwiseQuotient(units_).lpNorm<Eigen::Infinity>();
-  if (loss_ <= lost) return true;
-  exchanged_ = true;
-  loss_ = lost;
-  return factor_with_exchanges(a);
+  exchanged_ = !(loss_ <= most_);
+  if (!exchanged_) return true;
+  loss_ = most_;
+  const Sparse scaled = scale_.asDiagonal() * a * units_.asDiagonal();
+  if (pivoted_.size() == 0) pivoted_.analyse(scaled);
+  return pivoted_.factorise(scaled);
 }
 
 // What lies below the square of four columns stays in registers, in so many vectors, or is read again if that is 0.
@@ -180,17 +186,10 @@ void BandLu::factor_as_it_stands(const Sparse& a) {
   lay_out(whole(size_, lanes));  // solutions take eight at a time
 }
 
-bool BandLu::factor_with_exchanges(const Sparse& a) {
-  pivoted_.resize(size_, width_);
-  for (int k = 0; k < size_; ++k)
-    for (Sparse::InnerIterator it(a, k); it; ++it) pivoted_.at(it.row(), k) = scale_(it.row()) * it.value() * units_(k);
-  return pivoted_.factorise();
-}
-
 // Eight columns at a time: what they take from the rows below is read and written in the same vectors by the next
 // eight.
 template <int Sides>
-void BandLu::direct(const double* b, double* to) const {
+void BandLu::substitute(const double* b, double* to) const {
   const int end = whole(size_, lanes), h = height_;
   // Room for the rows of columns that are none of the matrix.
   const std::ptrdiff_t apart = end + 2 * h;
@@ -249,31 +248,8 @@ void BandLu::direct(const double* b, double* to) const {
     for (int k = 0; k < size_; ++k) to[static_cast<std::ptrdiff_t>(s) * size_ + k] = units_(k) * x[s][k];
 }
 
-Eigen::VectorXd BandLu::solve(const Eigen::VectorXd& b) const {
-  Eigen::VectorXd x(size_);
-  if (exchanged_) {
-    x = scale_.cwiseProduct(b);
-    pivoted_.solve(x.data());
-    return units_.cwiseProduct(x);
-  }
-  direct<1>(b.data(), x.data());
-  return x;
-}
-
-Eigen::MatrixXd BandLu::solve_all(const Eigen::MatrixXd& b) const {
-  Eigen::MatrixXd x(b.rows(), b.cols());
-  if (exchanged_) {
-    for (Eigen::Index c = 0; c < b.cols(); ++c) x.col(c) = solve(b.col(c));
-    return x;
-  }
-  Eigen::Index c = 0;
-  for (; c + 2 <= b.cols(); c += 2) direct<2>(b.col(c).data(), x.col(c).data());
-  if (c < b.cols()) direct<1>(b.col(c).data(), x.col(c).data());
-  return x;
-}
-
 template <int Sides>
-void BandLu::transposed(const double* b, double* to) const {
+void BandLu::substitute_transposed(const double* b, double* to) const {
   const int end = whole(size_, at_once), h = height_;
   const auto columns = [](double* first, int stride) {
     std::array<double*, Sides> out;
@@ -297,7 +273,7 @@ void BandLu::transposed(const double* b, double* to) const {
         for (std::size_t i = 0; i < at_once; ++i) sum[s][i] += at(c[i] + r) * here;
       }
     for (std::size_t s = 0; s < Sides; ++s)
-      for (std::size_t i = 0; i < at_once; ++i) taken[s][i] = whirl::film::sum(Pack{sum[s][i]});
+      for (std::size_t i = 0; i < at_once; ++i) taken[s][i] = whirl::core::sum(sum[s][i]);
   };
   for (int k = 0; k < end; k += at_once) {
     const double *const u0 = column(k), *const u1 = column(k + 1), *const u2 = column(k + 2), *const u3 = column(k + 3);
@@ -327,23 +303,20 @@ void BandLu::transposed(const double* b, double* to) const {
     for (int k = 0; k < size_; ++k) to[static_cast<std::ptrdiff_t>(s) * size_ + k] = scale_(k) * x[s][k];
 }
 
-Eigen::MatrixXd BandLu::solve_transposed(const Eigen::MatrixXd& b) const {
-  Eigen::MatrixXd x(b.rows(), b.cols());
-  for (Eigen::Index c = 0; c < b.cols();) {
-    if (exchanged_) {
-      x.col(c) = units_.cwiseProduct(b.col(c));
-      pivoted_.solve_transposed(x.col(c).data());
-      x.col(c).array() *= scale_.array();
-      ++c;
-    } else if (c + 1 < b.cols()) {
-      transposed<2>(b.col(c).data(), x.col(c).data());
-      c += 2;
-    } else {
-      transposed<1>(b.col(c).data(), x.col(c).data());
-      ++c;
-    }
+void BandLu::solve(bool transposed, const double* y, double* x, Index columns) const {
+  if (exchanged_) {
+    const VectorXd &before = transposed ? units_ : scale_, &after = transposed ? scale_ : units_;
+    const MatrixXd right = before.asDiagonal() * Eigen::Map<const MatrixXd>(y, size_, columns);
+    Eigen::Map<MatrixXd> found(x, size_, columns);
+    found = transposed ? pivoted_.solve_transposed(right) : pivoted_.solve(right);
+    found.array().colwise() *= after.array();
+    return;
   }
-  return x;
+  Index c = 0;
+  for (; c + 2 <= columns; c += 2)
+    transposed ? substitute_transposed<2>(y + c * size_, x + c * size_) : substitute<2>(y + c * size_, x + c * size_);
+  if (c < columns)
+    transposed ? substitute_transposed<1>(y + c * size_, x + c * size_) : substitute<1>(y + c * size_, x + c * size_);
 }
 
-}  // namespace whirl::film
+}  // namespace whirl::core
