@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace whirl::core {
@@ -28,8 +29,7 @@ bool BandLu::pays(double states, double width) {
 
 namespace {
 
-constexpr int at_once = 4;  // columns that are taken off the rest together: it is read and written once for them
-constexpr int lanes = 8;    // rows of these side by side, in an Eight
+constexpr int lanes = 8;  // rows side by side, in an Eight
 
 typedef double Eight __attribute__((vector_size(8 * lanes)));
 
@@ -58,13 +58,16 @@ constexpr Eight lane_number = {0, 1, 2, 3, 4, 5, 6, 7};
 }  // namespace
 
 BandLu::BandLu(const Sparse& pattern, VectorXd units, double most)
-    : size_(static_cast<int>(pattern.rows())),
-      width_(std::max(bandwidth(pattern), at_once)),
+    : BandLu(static_cast<int>(pattern.rows()), bandwidth(pattern), std::move(units), most) {}
+
+BandLu::BandLu(int size, int width, VectorXd units, double most)
+    : size_(size),
+      width_(std::max(width, at_once)),
       height_(whole(width_, lanes)),
       stride_(whole(2 * width_ + 1 + 2 * lanes, lanes)),
       most_(most),
       units_(units.size() == 0 ? VectorXd::Ones(size_) : std::move(units)),
-      scale_(size_) {
+      scale_(VectorXd::Ones(size_)) {
   // Zeros before the first column and behind those that the last of them reach.
   band_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(size_ + width_ + 2 * at_once) + lanes);
   panel_.resize(static_cast<std::size_t>(at_once * height_));
@@ -81,9 +84,10 @@ bool BandLu::scale_rows(const Sparse& a) {
 }
 
 bool BandLu::factor(const Sparse& a) {
-  if (!scale_rows(a)) return false;
+  regular_ = scale_rows(a);
+  if (!regular_) return false;
   exchanged_ = false;
-  factor_as_it_stands(a);
+  eliminate({.a = &a});
   const VectorXd image = a * units_;
   loss_ = (solve(image) - units_).cwiseQuotient(units_).lpNorm<Eigen::Infinity>();
   exchanged_ = !(loss_ <= most_);
@@ -91,16 +95,52 @@ bool BandLu::factor(const Sparse& a) {
   loss_ = most_;
   const Sparse scaled = scale_.asDiagonal() * a * units_.asDiagonal();
   if (pivoted_.size() == 0) pivoted_.analyse(scaled);
-  return pivoted_.factorise(scaled);
+  regular_ = pivoted_.factorise(scaled);
+  return regular_;
 }
 
-// What lies below the square of four columns stays in registers, in so many vectors, or is read again if that is 0.
-template <int Vectors, class LayOut>
-void BandLu::eliminate(const LayOut& lay_out) {
+void BandLu::clear() {
+  std::fill(band_.begin(), band_.end(), 0.0);
+  for (int k = size_; k < whole(size_, lanes); ++k) entry(k, k) = 1.0;  // solutions take eight at a time
+}
+
+void BandLu::lay_out(int first, int end, const Source& of) {
+  if (of.base && first < end)
+    std::copy_n(of.base->column(first) + first - width_, std::ptrdiff_t{stride_} * (end - first),
+                column(first) + first - width_);
+  if (!of.a) return;
+  for (int k = first; k < end; ++k) {
+    double* const c = column(k);
+    std::fill(c + k - width_, c + k - width_ + stride_, 0.0);
+    if (k >= size_) {
+      c[k] = 1.0;  // nothing lies beside it
+      continue;
+    }
+    for (Sparse::InnerIterator it(*of.a, k); it; ++it) c[it.row()] = scale_(it.row()) * it.value() * units_(k);
+  }
+}
+
+// Right-looking, four columns at a time: the square of their rows by itself, then what lies below it, then the columns
+// behind, which are read and written once for all four. A pivot of zero shows in what is tried afterwards. The diagonal
+// holds the reciprocals of the pivots. What lies below the square stays in registers, in so many vectors, or is read
+// again if that is 0. Columns are laid out shortly before they are needed, while they are in the cache.
+template <int Vectors>
+void BandLu::eliminate(const Source& of) {
   const int end = whole(size_, at_once), h = Vectors > 0 ? Vectors * lanes : height_;
   double* const l = panel_.data();
-  for (int k = 0; k < end; k += at_once) {
-    lay_out(std::min(k + at_once + width_, end));
+  int laid_out = of.first > 0 ? std::min(of.first + width_, end) : 0;
+  const auto marked = [&](int k) { return std::ptrdiff_t{stride_} * (std::min(k + width_, end) - k); };
+  if (of.first > 0 && of.first < end)
+    std::copy_n(marked_.begin(), marked(of.first), column(of.first) + of.first - width_);
+  for (int k = of.first; k < end; k += at_once) {
+    if (k == of.mark && k != of.first) {
+      const double* const from = column(k) + k - width_;
+      marked_.assign(from, from + marked(k));
+    }
+    const int needed = k + at_once < end ? std::min(k + at_once + width_, end) : whole(size_, lanes);
+    lay_out(std::exchange(laid_out, needed), needed, of);
+    for (int i = k; i < std::min(k + at_once, size_) && !of.extra.empty(); ++i)
+      column(i)[i] += of.extra[static_cast<std::size_t>(i)];
     double *const c0 = column(k), *const c1 = column(k + 1), *const c2 = column(k + 2), *const c3 = column(k + 3);
     const double p0 = c0[k] = 1.0 / c0[k];
     const double l10 = c0[k + 1] *= p0, l20 = c0[k + 2] *= p0, l30 = c0[k + 3] *= p0;
@@ -150,40 +190,19 @@ void BandLu::eliminate(const LayOut& lay_out) {
   }
 }
 
-// Right-looking, four columns at a time: the square of their rows by itself, then what lies below it, then the columns
-// behind. A pivot of zero shows in what is tried afterwards. The diagonal holds the reciprocals of the pivots.
-void BandLu::factor_as_it_stands(const Sparse& a) {
-  // Columns are laid out shortly before they are needed, while they are in the cache.
-  int laid_out = 0;
-  const auto lay_out = [&](int to) {
-    for (; laid_out < to; ++laid_out) {
-      const int k = laid_out;
-      double* const c = column(k);
-      std::fill(c + k - width_, c + k - width_ + stride_, 0.0);
-      if (k >= size_) {
-        c[k] = 1.0;  // nothing lies beside it
-        continue;
-      }
-      for (Sparse::InnerIterator it(a, k); it; ++it) c[it.row()] = scale_(it.row()) * it.value() * units_(k);
-    }
-  };
+void BandLu::eliminate(const Source& of) {
   switch (height_ / lanes) {
     case 1:
-      eliminate<1>(lay_out);
-      break;
+      return eliminate<1>(of);
     case 2:
-      eliminate<2>(lay_out);
-      break;
+      return eliminate<2>(of);
     case 3:
-      eliminate<3>(lay_out);
-      break;
+      return eliminate<3>(of);
     case 4:
-      eliminate<4>(lay_out);
-      break;
+      return eliminate<4>(of);
     default:
-      eliminate<0>(lay_out);
+      return eliminate<0>(of);
   }
-  lay_out(whole(size_, lanes));  // solutions take eight at a time
 }
 
 // Eight columns at a time: what they take from the rows below is read and written in the same vectors by the next
@@ -304,6 +323,10 @@ void BandLu::substitute_transposed(const double* b, double* to) const {
 }
 
 void BandLu::solve(bool transposed, const double* y, double* x, Index columns) const {
+  if (!regular_) {
+    std::fill_n(x, size_ * columns, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
   if (exchanged_) {
     const VectorXd &before = transposed ? units_ : scale_, &after = transposed ? scale_ : units_;
     const MatrixXd right = before.asDiagonal() * Eigen::Map<const MatrixXd>(y, size_, columns);
@@ -313,6 +336,8 @@ void BandLu::solve(bool transposed, const double* y, double* x, Index columns) c
     return;
   }
   Index c = 0;
+  for (; c + 4 <= columns; c += 4)
+    transposed ? substitute_transposed<4>(y + c * size_, x + c * size_) : substitute<4>(y + c * size_, x + c * size_);
   for (; c + 2 <= columns; c += 2)
     transposed ? substitute_transposed<2>(y + c * size_, x + c * size_) : substitute<2>(y + c * size_, x + c * size_);
   if (c < columns)

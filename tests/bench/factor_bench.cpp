@@ -63,8 +63,8 @@ void pads() {
     const Sparse a = pad(columns, rows, closed, false), g = pad(columns, rows, closed, true);
     const MatrixXd b = sides(a.rows(), 5);
     const std::string of = fmt::format("{}, width {}", what, bandwidth(a));
-    compare("Band, " + of, a.rows(), 5, {own_band<film::Band>(a, b), lapack_band(a, b, true, true)});
-    compare("GeneralBand, " + of, a.rows(), 5, {own_band<film::GeneralBand>(g, b), lapack_band(g, b, false, true)});
+    compare("BandLu in place, " + of, a.rows(), 5, {band_in_place(a, b, true), lapack_band(a, b, true, true)});
+    compare("The same, half ruptured", a.rows(), 5, {band_in_place(g, b, false), lapack_band(g, b, false, true)});
   };
   one("arc of 60 x 16 cells, half of it", 59, 8, false);
   one("arc of 60 x 16 cells, tilted", 59, 15, false);

@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "bench/timing.hpp"
-#include "film/algebra/band.hpp"
-#include "film/algebra/general_band.hpp"
 #include "whirl/core/band_lu.hpp"
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/index.hpp"
@@ -105,39 +103,26 @@ inline double left_of_pad(const Sparse& a, const MatrixXd& x, const MatrixXd& b)
                   left<Sparse, MatrixXd>(a.transpose(), x.rightCols(k), b.rightCols(k)));
 }
 
-/// film::Band or film::GeneralBand of a pad.
-template <class Band>
-Way own_band(const Sparse& a, const MatrixXd& b) {
-  constexpr bool symmetric = std::is_same_v<Band, film::Band>;
+/// core::BandLu of a pad, its entries set in place.
+inline Way band_in_place(const Sparse& a, const MatrixXd& b, bool symmetric) {
   struct State {
-    Band original, band;
-    VectorXd x;
-    std::vector<film::Quad> loads, adjoints;
+    core::BandLu band;
+    MatrixXd x;
   };
-  const auto n = static_cast<int>(a.rows()), width = bandwidth(a);
-  auto s = std::make_shared<State>(State{Band(n, width), Band(n, width), {}, {}, {}});
-  s->original.clear();
-  for (int j = 0; j < n; ++j)
-    for (Sparse::InnerIterator e(a, j); e; ++e)
-      if (const Index r = j - e.row(); !symmetric || r >= 0)
-        s->original.row(static_cast<int>(e.row()))[symmetric ? r : width + r] = e.value();
-  for (Index i = 0; i < n; ++i) s->loads.push_back(film::Quad::load(VectorXd(b.row(i).tail(4)).data()));
-  return {"own", [s] { s->band = s->original, s->band.factor(); },
-          [s, b] {
-            s->x = b.col(0), s->band.solve(core::span_of(s->x));
-            s->adjoints = s->loads;
-            if constexpr (symmetric)
-              s->band.solve(std::span(s->adjoints));
-            else
-              s->band.solve_transposed(s->adjoints);
+  const auto n = static_cast<int>(a.rows());
+  auto s = std::make_shared<State>(State{core::BandLu(n, bandwidth(a)), b});
+  return {"BandLu, in place",
+          [s, a] {
+            s->band.clear();
+            for (int j = 0; j < a.cols(); ++j)
+              for (Sparse::InnerIterator e(a, j); e; ++e) s->band.entry(static_cast<int>(e.row()), j) = e.value();
+            s->band.factor();
           },
-          [s, a, b] {
-            MatrixXd x(b.rows(), 5);
-            x.col(0) = s->x;
-            for (Index i = 0; i < x.rows(); ++i)
-              for (int k = 0; k < 4; ++k) x(i, 1 + k) = s->adjoints[static_cast<std::size_t>(i)][k];
-            return left_of_pad(a, x, b);
-          }};
+          [s, b, symmetric] {
+            s->band.solve(false, b.data(), s->x.data(), 1);
+            s->band.solve(!symmetric, b.col(1).data(), s->x.col(1).data(), b.cols() - 1);
+          },
+          [s, a, b] { return left_of_pad(a, s->x, b); }};
 }
 
 /// dpbtrf (positive definite) or dgbtrf; of a pad as above.

@@ -5,6 +5,8 @@
 
 #include <Eigen/SparseLU>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace whirl::core::testing {
 namespace {
@@ -55,6 +57,59 @@ TEST(BandLu, SolvesWhatASparseLuSolves) {
       EXPECT_LE(off(z + band.solve_transposed(c - a.transpose() * z)), 1e-11 * x.norm());
       EXPECT_LE((y - sparse.solve(b)).norm(), (1e-9 + lost) * x.norm());
     }
+}
+
+// Entries set in place, and once more with what is added to the diagonal from the eighth row on.
+TEST(BandLu, StartsAgainWhereTheDiagonalChanges) {
+  constexpr int columns = 9, first = 8;
+  for (const int line : {2, 5, 9}) {
+    const int n = columns * line;
+    Eigen::VectorXd rows(n);
+    for (int k = 0; k < n; ++k) rows(k) = k % 2 == 0 ? 1.0 : 1e-6;
+    const Eigen::SparseMatrix<double> a = rows.asDiagonal() * mesh(columns, line, 6.0);
+    BandLu base(n, line), band(n, line);
+    base.clear();
+    for (int k = 0; k < n; ++k)
+      for (Eigen::SparseMatrix<double>::InnerIterator it(a, k); it; ++it)
+        base.entry(static_cast<int>(it.row()), k) = it.value();
+    std::vector<double> more(static_cast<std::size_t>(n), 0.0);
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
+    for (const int from : {0, first}) {
+      for (int k = first; k < n; ++k) more[static_cast<std::size_t>(k)] = (from + 1) * (k % 3);
+      band.factor(base, more, from, first);
+      const Eigen::SparseMatrix<double> all =
+          a + Eigen::SparseMatrix<double>(Eigen::Map<const Eigen::VectorXd>(more.data(), n).asDiagonal());
+      EXPECT_LE((all * band.solve(b) - b).norm(), 1e-13 * b.norm());
+      EXPECT_LE((all.transpose() * band.solve_transposed(b) - b).norm(), 1e-13 * b.norm());
+    }
+    // Without limit: the unknown is held at zero.
+    const int held = first + 2;
+    more.assign(more.size(), 0.0);
+    more[static_cast<std::size_t>(held)] = std::numeric_limits<double>::infinity();
+    band.factor(base, more, first, first);
+    const Eigen::VectorXd x = band.solve(b);
+    EXPECT_EQ(x(held), 0);
+    Eigen::VectorXd left = a * x - b;
+    left(held) = 0;
+    EXPECT_LE(left.norm(), 1e-13 * b.norm());
+  }
+}
+
+// Ones beside a diagonal of zeros, and twos at a distance of two: A x in whole numbers.
+TEST(BandLu, ExchangesRowsWhereTheDiagonalIsZero) {
+  constexpr int n = 12;
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(n, n);
+  full.diagonal(1).setOnes();
+  full.diagonal(-1).setOnes();
+  full.diagonal(2).setConstant(2);
+  const Eigen::SparseMatrix<double> a = full.sparseView();
+  BandLu band(a);
+  ASSERT_TRUE(band.factor(a));
+  EXPECT_TRUE(band.exchanged());
+  Eigen::MatrixXd x(n, 2);
+  for (int i = 0; i < n; ++i) x.row(i) << i + 1, 3 - i * i;
+  EXPECT_LT((band.solve(full * x) - x).lpNorm<Eigen::Infinity>(), 1e-11);
+  EXPECT_LT((band.solve_transposed(full.transpose() * x) - x).lpNorm<Eigen::Infinity>(), 1e-11);
 }
 
 TEST(BandLu, RefusesWhatIsSingular) {

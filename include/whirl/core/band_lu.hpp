@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <span>
 #include <vector>
 
 #include "whirl/core/pivoted_lu.hpp"
@@ -18,6 +19,8 @@ public:
   using Sparse = Eigen::SparseMatrix<double>;
   /// `units` [n] are what the unknowns are measured in, so that entries of a row can be compared; one if empty.
   explicit BandLu(const Sparse& pattern, Eigen::VectorXd units = {}, double most = 1e-7);
+  /// Of n = `size` states with `width` diagonals on either side, whose entries are set in place.
+  BandLu(int size, int width, Eigen::VectorXd units = {}, double most = 1e-7);
   /// Largest distance of an entry from the diagonal.
   [[nodiscard]] static int bandwidth(const Sparse& pattern);
   /// Whether this costs less than a sparse LU of a mesh in two directions, by counts of states and their bandwidth.
@@ -25,9 +28,22 @@ public:
   [[nodiscard]] static bool pays(const Sparse& pattern) {
     return pays(static_cast<double>(pattern.rows()), bandwidth(pattern));
   }
-  /// Of a matrix with that pattern; false if it is singular.
+  /// Of a matrix with that pattern; false if it is singular, and solutions are then not finite.
   [[nodiscard]] bool factor(const Sparse& a);
-  /// A^-1 y and A^-T y of a vector or of all columns; two at a time cost little more than one.
+  /// A = 0, an entry of A, and the factors of what then stands there, unscaled and untried: for matrices whose rows or
+  /// columns are diagonally dominant.
+  void clear();
+  [[nodiscard]] double& entry(int row, int k) { return column(k)[row]; }
+  void factor() { eliminate({}); }
+  /// The same of A + diag(extra) [n], A = `base`, which starts again where only `extra` changed: the first call takes
+  /// all columns and remembers what it finds in those from `mark` on, a multiple of at_once; later ones, with first
+  /// = mark, only do these. An infinite extra holds its unknown at zero.
+  void factor(const BandLu& base, std::span<const double> extra, int first, int mark) {
+    eliminate({nullptr, &base, extra, first, mark});
+  }
+  /// Columns that are eliminated together.
+  static constexpr int at_once = 4;
+  /// A^-1 y and A^-T y of a vector or of all columns; two or four at a time cost little more than one.
   template <class Y>
   [[nodiscard]] typename Y::PlainObject solve(const Eigen::MatrixBase<Y>& y) const {
     return answer(false, y.derived().eval());
@@ -36,7 +52,7 @@ public:
   [[nodiscard]] typename Y::PlainObject solve_transposed(const Eigen::MatrixBase<Y>& y) const {
     return answer(true, y.derived().eval());
   }
-  /// x = A^-1 y or A^-T y of n x columns numbers each, which do not overlap.
+  /// x = A^-1 y or A^-T y of n x columns numbers each; x may be y.
   void solve(bool transposed, const double* y, double* x, Eigen::Index columns) const;
   /// The largest relative error of the solution that was tried.
   [[nodiscard]] double loss() const { return loss_; }
@@ -45,9 +61,16 @@ public:
 
 private:
   [[nodiscard]] bool scale_rows(const Sparse& a);
-  void factor_as_it_stands(const Sparse& a);
-  template <int Vectors, class LayOut>
-  void eliminate(const LayOut& lay_out);
+  struct Source {  // what to eliminate; none: what stands here
+    const Sparse* a = nullptr;
+    const BandLu* base = nullptr;
+    std::span<const double> extra = {};
+    int first = 0, mark = -1;
+  };
+  void lay_out(int first, int end, const Source& of);
+  void eliminate(const Source& of);
+  template <int Vectors>
+  void eliminate(const Source& of);
   template <int Sides>
   void substitute(const double* b, double* to) const;
   template <int Sides>
@@ -67,8 +90,9 @@ private:
   // Of column k the rows k - width to k + width, as they stand: row r at column(k)[r]. Between columns there are zeros,
   // eight or more, so that whole vectors may be taken above and below each; some columns more behind the last.
   std::vector<double> band_;
-  std::vector<double> panel_;  // L of four columns at once
-  bool exchanged_ = false;
+  std::vector<double> panel_;   // L of four columns at once
+  std::vector<double> marked_;  // columns mark .. mark + width when those before were eliminated
+  bool regular_ = true, exchanged_ = false;
   double most_, loss_ = 0;
   PivotedLu<double> pivoted_;
   Eigen::VectorXd units_, scale_;  // D

@@ -57,11 +57,6 @@ inline double sum(Pack a) {
   return ((a[0] + a[4]) + (a[1] + a[5])) + ((a[2] + a[6]) + (a[3] + a[7]));
 }
 
-/// a[1] .. a[7], b[0].
-inline Pack next(Pack a, Pack b) {
-  return {__builtin_shufflevector(a.v, b.v, 1, 2, 3, 4, 5, 6, 7, 8)};
-}
-
 inline double lowest(Pack a) {
   using Half = Quad::Vector;
   const Half low = __builtin_shufflevector(a.v, a.v, 0, 1, 2, 3), high = __builtin_shufflevector(a.v, a.v, 4, 5, 6, 7);

@@ -14,7 +14,8 @@ BandedPad::BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& l
       cavitation_(options.cavitation),
       stiffen_(1.0 + std::pow(4.0 * pad.radius * grid_.dtheta / pad.length, 4)),
       band_((grid_.n_theta - first_) * rows_, (pad.closed ? 2 : 1) * rows_),
-      base_(band_) {
+      base_(cavitation_ == Reynolds::Cavitation::reynolds ? (grid_.n_theta - first_) * rows_ : 0,
+            (pad.closed ? 2 : 1) * rows_) {
   const std::size_t size = source_.size();
   cavitated_.assign(size, 0);
   for (int i = first_; i < grid_.n_theta; ++i)
@@ -26,25 +27,31 @@ BandedPad::BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& l
 }
 
 void BandedPad::assemble() {
-  Band& band = cavitation_ == Reynolds::Cavitation::reynolds ? base_ : band_;
+  core::BandLu& band = cavitation_ == Reynolds::Cavitation::reynolds ? base_ : band_;
+  const auto entry = [&](std::size_t row, std::size_t column) -> double& {
+    return band.entry(static_cast<int>(row), static_cast<int>(column));
+  };
+  const auto couple = [&](std::size_t a, std::size_t b, double value) {
+    entry(a, b) -= value;
+    entry(b, a) -= value;
+  };
+  band.clear();
   for (int i = first_; i < grid_.n_theta; ++i) {
     for (int j = 0; j < rows_; ++j) {
       const std::size_t here = at(i, j);
-      double* row = band.row(static_cast<int>(here));
-      std::fill(row, row + (pad_.closed ? 2 : 1) * rows_ + 1, 0.0);
       if (cavitated_[here]) {
-        row[0] = 1.0;
+        entry(here, here) = 1.0;
         continue;
       }
       const double left = share(j) * a_.value[around(wrap(i - 1), j)], right = share(j) * a_.value[around(i, j)];
       const double up = j + 1 < z_faces_ ? b_.value[along(i, j + 1)] : 0.0;
-      row[0] = left + right + b_.value[along(i, j)] + up;
-      if (j + 1 < rows_ && !cavitated_[here + 1]) row[1] -= up;
-      // Of two neighbours the one that comes first holds the entry.
+      entry(here, here) = left + right + b_.value[along(i, j)] + up;
+      if (j + 1 < rows_ && !cavitated_[here + 1]) couple(here, here + 1, up);
+      // Of two neighbours the one that comes first tells.
       for (const auto& [side, value] : {std::pair{i + 1, right}, std::pair{i - 1, left}}) {
         if (wall(side)) continue;
         const std::size_t there = at(wrap(side), j);
-        if (there > here && !cavitated_[there]) row[there - here] -= value;
+        if (there > here && !cavitated_[there]) couple(here, there, value);
       }
     }
   }
@@ -57,7 +64,7 @@ void BandedPad::solve() {
   band_.factor();
   ++factorisations_;
   for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = cavitated_[k] ? 0.0 : -source_[k];
-  band_.solve(x_);
+  band_.solve(false, x_.data(), x_.data(), 1);
 }
 
 // Force, and its derivatives in the nodal pressures into load_.
@@ -105,7 +112,12 @@ void BandedPad::adjoint(const JournalMotion& motion, Response& response) {
   }
   const bool ruptured = cavitation_ == Reynolds::Cavitation::reynolds;
   const bool conserving = cavitation_ == Reynolds::Cavitation::mass_conserving;
-  conserving ? general_->solve_transposed(load_) : band_.solve(load_);
+  sides_.resize(std::ssize(load_), tilt_ ? 4 : 2);
+  for (Eigen::Index k = 0; k < sides_.rows(); ++k)
+    for (int f = 0; f < sides_.cols(); ++f) sides_(k, f) = load_[static_cast<std::size_t>(k)][f];
+  band_.solve(conserving, sides_.data(), sides_.data(), sides_.cols());  // the others are symmetric
+  for (Eigen::Index k = 0; k < sides_.rows(); ++k)
+    for (int f = 0; f < sides_.cols(); ++f) load_[static_cast<std::size_t>(k)].set(f, sides_(k, f));
   // The equation of a node that is held has no derivative; nodes in walls are left out below.
   if (conserving && !holes_.empty())
     for (std::size_t k = 0; k < load_.size(); ++k)

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "film/algebra/band.hpp"
-#include "film/algebra/general_band.hpp"
+#include "film/algebra/pack.hpp"
 #include "film/sheet/pad_equations.hpp"
+#include "whirl/core/band_lu.hpp"
 
 namespace whirl::film {
 
@@ -60,15 +60,15 @@ private:
   // not, 1 + (dx/(L/4))^4 flattens it and whole cells remain.
   double stiffen_;
   std::vector<char> cavitated_;  // nodes whose pressure is held: in a groove or a hole
-  Band band_, base_;             // factorised; of ruptured films the equations of a full one
+  core::BandLu band_, base_;     // factorised; of ruptured films the equations of a full one
   std::vector<double> x_;        // pressure
   std::vector<Quad> load_;       // adjoint variables of F_x, F_y, M_x, M_y
+  Eigen::MatrixXd sides_;        // the same by columns
   // Reynolds cavitation only: distance of the rupture from each node, kept as the start of the next evaluation; what
   // cells cut or in the cavity add to the diagonal; dF = -(by_source_ d src + by_mobility_ da) beside the adjoint of A.
   std::vector<double> u_, more_;
   std::vector<Quad> by_source_, by_mobility_;
   // Mass-conserving cavitation only.
-  std::optional<GeneralBand> general_;
   std::vector<char> full_;        // nodes with pressure; kept as the start of the next evaluation
   std::vector<char> before_;      // in the iteration before
   std::vector<int> unheld_rows_;  // around a whole circle, without a node that is held
@@ -76,7 +76,7 @@ private:
   std::vector<double> diagonal_;  // of A
   double void_at_edge_ = 0.0;     // 1 - edge_fill
   long factorisations_ = 0;
-  int mark_ = 0;        // rows from here on change while the rupture moves (Band::factor)
+  int mark_ = 0;        // rows from here on change while the rupture moves (BandLu::factor)
   bool stale_ = false;  // the rupture has moved since band_ was factorised
   // What x_ and band_ belong to: solvers ask for the force first, then for the tangents at the same place.
   std::optional<JournalMotion> solved_;

@@ -29,7 +29,6 @@ namespace whirl::film {
 
 void BandedPad::enter_conserving(double edge_fill) {
   const std::size_t n = source_.size();
-  general_.emplace(static_cast<int>(n), (pad_.closed ? 2 : 1) * rows_);
   full_.assign(n, 1);
   deficit_.assign(n, 0.0);
   diagonal_.assign(n, 1.0);
@@ -76,9 +75,9 @@ void BandedPad::solve_conserving() {
       throw core::NotConverged("the cavitated region of a film did not settle");
     }
     assemble_conserving();
-    general_->factor();
+    band_.factor();
     ++factorisations_;
-    general_->solve(x_);
+    band_.solve(false, x_.data(), x_.data(), 1);
     largest = 0.0;
     bool finite = true;
     for (const double w : x_) {
@@ -112,14 +111,14 @@ void BandedPad::solve_conserving() {
 // The equations in w, with the columns of A at full nodes and those of -D, scaled to the same diagonal, elsewhere; and
 // their right-hand side in x_.
 void BandedPad::assemble_conserving() {
-  GeneralBand& band = *general_;
-  const int width = (pad_.closed ? 2 : 1) * rows_;
-  band.clear();
+  band_.clear();
   for (int i = first_; i < grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) {
       const std::size_t here = at(i, j);
-      double* const row = band.row(static_cast<int>(here)) + width;
-      row[0] = diagonal_[here];
+      const auto entry = [&](std::size_t there) -> double& {
+        return band_.entry(static_cast<int>(here), static_cast<int>(there));
+      };
+      entry(here) = diagonal_[here];
       x_[here] = 0.0;
       if (cavitated_[here]) {
         x_[here] = held_pressure(i, j);
@@ -128,7 +127,7 @@ void BandedPad::assemble_conserving() {
       x_[here] -= source_[here];
       const auto along_it = [&](int other, double value) {
         const std::size_t there = at(i, other);
-        if (full_[there]) row[other - j] -= value;
+        if (full_[there]) entry(there) -= value;
       };
       if (j > 0) along_it(j - 1, b_.value[along(i, j)]);
       if (j + 1 < rows_) along_it(j + 1, b_.value[along(i, j + 1)]);
@@ -142,11 +141,10 @@ void BandedPad::assemble_conserving() {
           continue;
         }
         const std::size_t there = at(wrap(side), j);
-        double* const entry = row + (static_cast<std::ptrdiff_t>(there) - static_cast<std::ptrdiff_t>(here));
         if (full_[there])
-          *entry -= share(j) * a_.value[around(wrap(face), j)];
+          entry(there) -= share(j) * a_.value[around(wrap(face), j)];
         else if (upstream)
-          *entry -= diagonal_[there];
+          entry(there) -= diagonal_[there];
       }
     }
 }

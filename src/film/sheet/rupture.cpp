@@ -72,7 +72,8 @@ void BandedPad::factor_ruptured() {
     }
   }
   if (changed >= mark_) return band_.factor(base_, more_, mark_, mark_);
-  mark_ = std::max(1, first - 2 * rows_);
+  constexpr int steps = core::BandLu::at_once;
+  mark_ = std::max(1, (first - 2 * rows_) / steps) * steps;
   band_.factor(base_, more_, 0, mark_);
 }
 
@@ -103,7 +104,7 @@ void BandedPad::solve_ruptured() {
       const double filled = rupture::cut(u_[k]) ? 0.5 * (1.0 + u_[k]) : 1.0;
       x_[k] = cavitated_[k] ? 0.0 : -filled * source_[k];
     }
-    band_.solve(x_);
+    band_.solve(false, x_.data(), x_.data(), 1);
     moved = move_rupture();
   } while (!(moved <= kNear));
   stale_ = moved > kExact;
