@@ -25,7 +25,7 @@ text = {str(p.relative_to(root)): p.read_text() for p in files}
 
 # Stems of files, wherever they stand: a file that moves stays in the list, one that ends leaves it.
 ALGEBRA = """
-band band_lu general_band line_solver ring_preconditioner gas_inverse lent_lu film_matrix stencil pack
+band_lu line_solver ring_preconditioner gas_inverse lent_lu film_matrix stencil pack
 direct_inverse film_inverse
 part_factors frequency_hub frequency_inverse frequency_linearise frequency_part frequency_resolvent frequency_transfer
 port_elimination port_krylov port_layout port_maker port_matrix matrix_rows thin local_part stored spread_point rational_fit
@@ -34,7 +34,7 @@ time_modes mode_composition mode_system dense_composition sweep_composition swee
 film_march dominant_subspace spread_subspace spread_layout
 runge_kutta dense_stage structured_rate structured_stage sparse_stage
 bordered_monodromy nearest_eigenvalues thin_inverse equations
-entry_stream sparse_lu pencil_lu pivoted_lu pivoted_band dense_lu direct_solver least_squares symmetric shell
+entry_stream sparse_lu pencil_lu pivoted_lu dense_lu direct_solver least_squares symmetric shell
 """.split()
 WRAPPERS = {"DenseLu", "SparseLu", "PivotedLu"}
 SOLVES = {"solve", "solve_transposed", "solve_adjoint", "solve_at", "apply", "apply_at", "eliminate", "substitute", "precondition", "factorise", "compose"}

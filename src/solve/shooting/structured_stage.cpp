@@ -1,10 +1,11 @@
 // Stages of systems that tell their structure.
 
 #include <algorithm>
+#include <optional>
 
 #include "solve/shooting/structured_rate.hpp"
+#include "whirl/core/band_lu.hpp"
 #include "whirl/core/dense_lu.hpp"
-#include "whirl/core/pivoted_band.hpp"
 #include "whirl/solve/shooting/runge_kutta.hpp"
 
 namespace whirl::solve {
@@ -15,6 +16,8 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
+
+constexpr double digits_lost = 1e-11;  // of a band: then rows are exchanged
 
 /// k - f(x) = 0, whose derivatives come with f: no point is evaluated twice. With A = df/dx, (I - own A)^-1 treats the
 /// states of a film but its last `reach` as a band,
@@ -57,7 +60,8 @@ public:
 
 private:
   struct Part {
-    core::PivotedBand band;
+    Eigen::SparseMatrix<double> matrix;  // B, with all entries of its band
+    std::optional<core::BandLu> band;
     MatrixXd response;  // B^-1 U: of the seen inputs, then of the last states [interior x ...]
     MatrixXd forces;    // own P^T [interior x forces]
     MatrixXd ends;      // own D^T of the last states' rows [interior x reach]
@@ -101,14 +105,27 @@ void StructuredStage::factorise_bands(double own) {
     part.inputs.conservativeResize(seen, n);
     part.response.conservativeResize(inner, seen + reach);
     part.ends.setZero(inner, reach);
-    part.band.resize(inner, reach);
-    for (Index k = 0; k < inner; ++k) part.band.at(k, k) = 1;
+    if (!part.band) {
+      part.matrix.resize(inner, inner);
+      part.matrix.reserve(Eigen::VectorXi::Constant(inner, static_cast<int>(2 * reach + 1)));
+      for (Index j = 0; j < inner; ++j)
+        for (Index k = std::max<Index>(0, j - reach); k < std::min(inner, j + reach + 1); ++k)
+          part.matrix.insert(k, j) = 0;
+      part.matrix.makeCompressed();
+      part.band.emplace(part.matrix, VectorXd(), digits_lost);
+    }
+    const auto entry = [&](Index k, Index j) -> double& {
+      const int first = part.matrix.outerIndexPtr()[j];
+      return part.matrix.valuePtr()[first + k - part.matrix.innerIndexPtr()[first]];
+    };
+    part.matrix.coeffs().setZero();
+    for (Index k = 0; k < inner; ++k) entry(k, k) = 1;
     for (std::size_t d = 0; d < film.shifts.size(); ++d)
       for (Index k = 0; k < count; ++k) {
         const double value = -own * a_(film.diagonals + static_cast<Index>(d) * film.stride + k);
         const Index j = (k + film.shifts[d] + count) % count;
         if (k < inner && j < inner)
-          part.band.at(k, j) += value;
+          entry(k, j) += value;
         else if (k < inner)
           part.response(k, seen + j - inner) += value;
         else if (j < inner)
@@ -116,8 +133,8 @@ void StructuredStage::factorise_bands(double own) {
         else
           v(end + k - inner, end + j - inner) += value;
       }
-    part.band.factorise();
-    for (Index c = 0; c < part.response.cols(); ++c) part.band.solve(part.response.col(c).data());
+    (void)part.band->factor(part.matrix);
+    part.band->solve(false, part.response.data(), part.response.data(), part.response.cols());
     part.forces.resize(inner, film.at.forces);
     for (Index e = 0; e < film.at.forces; ++e) {
       const auto force = own * a_.segment(film.forces + e * film.stride, count);
@@ -147,7 +164,7 @@ void StructuredStage::solve_bands(double* r) const {
     const Part& part = parts_[f];
     double* s = r + n + film.at.first;
     const Index inner = film.at.count - film.reach;
-    part.band.solve(s);
+    part.band->solve(false, s, s, 1);
     const Map<const VectorXd> interior(s, inner);
     ends_.head(n) +=
         rate_.lead().middleCols(film.at.first_force, film.at.forces) * (part.forces.transpose() * interior);
