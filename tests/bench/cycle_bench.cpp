@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "bench/timing.hpp"
+#include "solve/cycle/linear_part.hpp"
 #include "support/train_system.hpp"
 #include "system/start.hpp"
 #include "whirl/core/session.hpp"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solve/cycle/linear_part.hpp"
 #include "whirl/solve/cycle/interval.hpp"
 
 using namespace whirl;

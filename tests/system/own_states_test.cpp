@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "solve/cycle/linear_part.hpp"
 #include "support/film_of.hpp"
 #include "support/petsc_options.hpp"
 #include "whirl/core/error.hpp"

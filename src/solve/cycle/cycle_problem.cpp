@@ -6,6 +6,7 @@
 
 #include "solve/cycle/cycle_matrix.hpp"
 #include "solve/cycle/film_march.hpp"
+#include "solve/cycle/linear_part.hpp"
 #include "solve/cycle/own_block.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"

@@ -43,7 +43,7 @@ void FilmMarch::step(double length, Eigen::Ref<MatrixXd> nodes, double& largest)
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     if (!blocks_[i]) continue;
     const problem::OwnStates& film = structure_.own()[i];
-    blocks_[i]->factorise_alone(points_, i, point_, n + film.first, length);
+    blocks_[i]->factorise(points_, i, point_, n + film.first, length, false);
     film_.resize(m * film.count);
     Map<MatrixXd> change(film_.data(), m, film.count);
     change = rows_.middleRows(film.first, film.count).transpose();

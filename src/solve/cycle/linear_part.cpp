@@ -1,4 +1,4 @@
-#include "whirl/solve/cycle/linear_part.hpp"
+#include "solve/cycle/linear_part.hpp"
 
 // With V = value(:, 1..m) and D = slope(:, 1..m)/H, the row alpha x_a' + beta x_b = y_i holds at the m points:
 //
@@ -39,13 +39,12 @@ LinearPart::LinearPart(const Scheme& sc, double len, problem::DenseBlocks blocks
   take_pairs();
   factorise();
   const Index m = scheme.degree;
-  w00.resize(m * n, n);
+  free.resize(m * n, n);
   y = MatrixXd::Zero(m * n, m * r);
   for (Index j = 0; j < m; ++j) {
-    w00.middleRows(j * n, n) = scheme.value(j, 0) * l0 + (scheme.slope(j, 0) / length) * l1;
+    free.middleRows(j * n, n) = -scheme.value(j, 0) * l0 - (scheme.slope(j, 0) / length) * l1;
     y.block(j * n, j * r, n, r) = b;
   }
-  free = -w00;
   solve(free);
   solve(y);
   vy = inputs(y);
@@ -121,6 +120,31 @@ void LinearPart::solve_transposed(MatrixXd& x) const {
   u -= along(value_integral_.transpose(), coupling_.transpose() * x_k);
   points(row_, Eigen::all) = x_k;
   points(rate_row_, Eigen::all) = u;
+}
+
+void SparsePart::prepare() const {
+  if (y.size() > 0) return;
+  modes_ = interval_modes(scheme, length);
+  pencil_.compute(l1, l0, kinematic, modes_.lambda);
+  y = MatrixXd::Zero(scheme.degree * n, scheme.degree * r);
+  for (Index j = 0; j < scheme.degree; ++j) y.block(j * n, j * r, n, r) = MatrixXd(b);
+  solve(y);
+  vy = inputs(y);
+}
+
+void SparsePart::apply(MatrixXd& x, const MatrixXd& into, const MatrixXd& out, bool adjoint) const {
+  const Index m = scheme.degree, lanes = modes_.lanes, columns = x.cols(), count = lanes * columns;
+  MatrixXd all(2 * count, n);
+  for (Index q = 0; q < columns; ++q) {
+    const MatrixXd hat = into.transpose() * x.col(q).reshaped(n, m).transpose();
+    all.middleRows(q * lanes, lanes) = hat.topRows(lanes);
+    all.middleRows(count + q * lanes, lanes) = hat.bottomRows(lanes);
+  }
+  adjoint ? pencil_.solve_adjoint(all, columns) : pencil_.solve(all, columns);
+  for (Index q = 0; q < columns; ++q)
+    x.col(q).reshaped(n, m) = (out.leftCols(lanes) * all.middleRows(q * lanes, lanes) +
+                               out.rightCols(lanes) * all.middleRows(count + q * lanes, lanes))
+                                  .transpose();
 }
 
 }  // namespace whirl::solve

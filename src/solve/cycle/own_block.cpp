@@ -131,19 +131,13 @@ void OwnBand<M>::find_border() {
 }
 
 template <int M>
-void OwnBand<M>::factorise_alone(const std::vector<const problem::PointState*>& points, std::size_t index,
-                                 const problem::ScaledPoint& scales, Index first, double length) {
+void OwnBand<M>::factorise(const std::vector<const problem::PointState*>& points, std::size_t index,
+                           const problem::ScaledPoint& scales, Index first, double length, bool whole) {
   length_ = length;
   slope_ = scheme_.slope.rightCols(m()) / length;
   read(points, index, scales, first);
   factorise_band();
-}
-
-template <int M>
-void OwnBand<M>::factorise(const std::vector<const problem::PointState*>& points, std::size_t index,
-                           const problem::ScaledPoint& scales, Index first, double length) {
-  factorise_alone(points, index, scales, first, length);
-  find_border();
+  if (whole) find_border();
 }
 
 template <int M>

@@ -45,12 +45,10 @@ struct OwnShape {
 class OwnBlock {
 public:
   virtual ~OwnBlock() = default;
-  /// From the tangents of film `index` at the points; `first` is its first state among all states.
+  /// From the tangents of film `index` at the points; `first` is its first state among all states. Not `whole` it
+  /// serves eliminate() alone, of a film without separators.
   virtual void factorise(const std::vector<const problem::PointState*>& points, std::size_t index,
-                         const problem::ScaledPoint& scales, Eigen::Index first, double length) = 0;
-  /// The same for eliminate() alone, of a film without separators.
-  virtual void factorise_alone(const std::vector<const problem::PointState*>& points, std::size_t index,
-                               const problem::ScaledPoint& scales, Eigen::Index first, double length) = 0;
+                         const problem::ScaledPoint& scales, Eigen::Index first, double length, bool whole) = 0;
 
   /// Inputs that occur at all, counted from the film's first one.
   [[nodiscard]] const std::vector<Eigen::Index>& active() const { return active_; }
@@ -82,13 +80,6 @@ public:
   virtual void inputs_transposed(const double* y, double* eta) const = 0;
   /// s += A0^T y - (F value_0 + F' slope_0/H)^T force [count].
   virtual void start_transposed(const double* y, const double* force, double* s) const = 0;
-
-  /// dg/dw [m x active] of a state.
-  [[nodiscard]] virtual Eigen::MatrixXd inputs_of(Eigen::Index state) const = 0;
-  /// What the forces at point j make of a state at node l, or of its start for l = 0 [forces].
-  [[nodiscard]] virtual Eigen::VectorXd forces_of(Eigen::Index state, int j, int l) const = 0;
-  /// A(j, l) for l = 1..m and A0(j) for l = 0 between two states.
-  [[nodiscard]] virtual double entry(Eigen::Index row, Eigen::Index slot, int j, int l) const = 0;
 
 protected:
   explicit OwnBlock(OwnShape shape) : shape_(std::move(shape)) {}

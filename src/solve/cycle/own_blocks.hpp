@@ -25,9 +25,7 @@ public:
     factor_.resize(static_cast<std::size_t>(shape_.interior() * shape_.width() * degree_ * degree_));
   }
   void factorise(const std::vector<const problem::PointState*>& points, std::size_t index,
-                 const problem::ScaledPoint& scales, Index first, double length) override;
-  void factorise_alone(const std::vector<const problem::PointState*>& points, std::size_t index,
-                       const problem::ScaledPoint& scales, Index first, double length) override;
+                 const problem::ScaledPoint& scales, Index first, double length, bool whole) override;
   void eliminate(Index columns, double* y, MatrixXd& force) const override;
   void substitute(Index columns, double* y, const MatrixXd& eta, const MatrixXd& separators) const override;
   void start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const override;
@@ -37,30 +35,6 @@ public:
   void eliminate_transposed(double* y, const double* force) const override;
   void inputs_transposed(const double* y, double* eta) const override;
   void start_transposed(const double* y, const double* force, double* s) const override;
-  [[nodiscard]] MatrixXd inputs_of(Index state) const override {
-    MatrixXd out(m(), static_cast<Index>(active_.size()));
-    for (Index c = 0; c < out.cols(); ++c)
-      for (Index j = 0; j < m(); ++j) out(j, c) = input(state, active_[static_cast<std::size_t>(c)])[j];
-    return out;
-  }
-  [[nodiscard]] VectorXd forces_of(Index state, int j, int l) const override {
-    VectorXd out(forces_);
-    for (Index d = 0; d < forces_; ++d) {
-      if (l == 0) {
-        out(d) = force_at_start(state, d, j);
-        continue;
-      }
-      out(d) = value_(j, l - 1) * force_of(state)[d * m() + j];
-      if (rated()) out(d) += slope_(j, l - 1) * force_rate_of(state)[d * m() + j];
-    }
-    return out;
-  }
-  [[nodiscard]] double entry(Index row, Index slot, int j, int l) const override {
-    const Index at = (row * shape_.width() + slot) * m() + j;
-    if (l == 0) return -at_start_[static_cast<std::size_t>(at)];
-    return value_(j, l - 1) * by_state_[static_cast<std::size_t>(at)] +
-           slope_(j, l - 1) * by_rate_[static_cast<std::size_t>(at)];
-  }
 
 private:
   [[nodiscard]] Index m() const { return M > 0 ? M : degree_; }

@@ -7,7 +7,7 @@
 
 #include "whirl/problem/scaled_point.hpp"
 #include "whirl/problem/structure.hpp"
-#include "whirl/solve/cycle/linear_part.hpp"
+#include "whirl/problem/thin_blocks.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 
 namespace whirl::solve {
@@ -40,6 +40,8 @@ public:
                                                             std::vector<Eigen::MatrixXd> jx,
                                                             std::vector<Eigen::MatrixXd> jxdot);
 
+/// What intervals of one length share: the part of F that is linear, factorised.
+class LinearPart;
 /// Interval by low-rank update of its linear part; `tangents` holds df/dw [r x w] at each point.
 [[nodiscard]] std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPart> part,
                                                                std::vector<Eigen::MatrixXd> tangents);
@@ -52,8 +54,8 @@ class SparsePart;
 [[nodiscard]] std::unique_ptr<Interval> make_sparse_interval(std::shared_ptr<const SparsePart> part,
                                                              std::vector<Eigen::MatrixXd> tangents);
 
-/// Interval of a system with films that have own states behind those of `part`, from what is known at its points; O(n)
-/// to factorise, to solve and to carry.
+/// The same of a system with films that have own states behind those of `part`, from what is known at its points; O(n)
+/// to factorise, to solve and to carry. `films` outlive it.
 [[nodiscard]] std::unique_ptr<Interval> make_own_interval(std::shared_ptr<const LinearPart> part,
                                                           const std::vector<problem::OwnStates>& films,
                                                           const problem::ScaledPoint& scales,

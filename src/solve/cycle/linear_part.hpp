@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "solve/cycle/pencil.hpp"
+#include "solve/cycle/time_modes.hpp"
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/problem/thin_blocks.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
@@ -26,6 +28,8 @@ struct ThinPart : problem::LinearBlocks<Matrix> {
   const Scheme& scheme;
   double length;
   Eigen::Index n, r, w;
+  /// -W0^-1 W00 [mn x n] and V0 - V W0^-1 W00 [mw x n], of dense blocks only.
+  Eigen::MatrixXd free, inputs_free;
 
   /// With V = value x C: V x [mw x k] for x [mn x k], and V^T s [mn x k].
   [[nodiscard]] Eigen::MatrixXd inputs(const Eigen::MatrixXd& x) const {
@@ -61,9 +65,7 @@ class LinearPart : public ThinPart<Eigen::MatrixXd> {
 public:
   LinearPart(const Scheme& scheme, double length, problem::DenseBlocks blocks);
 
-  Eigen::MatrixXd w00, y, vy;   ///< W00 [mn x n], Y [mn x mr], V Y [mw x mr]
-  Eigen::MatrixXd free;         ///< -W0^-1 W00 [mn x n]
-  Eigen::MatrixXd inputs_free;  ///< V0 - V W0^-1 W00 [mw x n]
+  Eigen::MatrixXd y, vy;  ///< Y [mn x mr], V Y [mw x mr]
 
   /// x := W0^-1 x and x := W0^-T x, column by column [mn x k].
   void solve(Eigen::MatrixXd& x) const;
@@ -83,6 +85,22 @@ private:
   Eigen::MatrixXd value_, integral_, value_integral_;  // V, D^-1, V D^-1 [m x m]
   Eigen::MatrixXd coupling_;                           // L0_ka/alpha [(n - k) x k]
   core::DenseLu<double> lu_;
+};
+
+/// The same of sparse blocks, by time modes of the interval. The factors, Y and V Y are made when the first interval of
+/// this length is solved, since a Newton step by time modes of the cycle solves none.
+class SparsePart : public ThinPart<Eigen::SparseMatrix<double>> {
+public:
+  using ThinPart::ThinPart;
+  mutable Eigen::MatrixXd y, vy;
+  void prepare() const;
+  void solve(Eigen::MatrixXd& x) const { apply(x, modes_.into, modes_.out, false); }
+  void solve_transposed(Eigen::MatrixXd& x) const { apply(x, modes_.out, modes_.into, true); }
+
+private:
+  void apply(Eigen::MatrixXd& x, const Eigen::MatrixXd& into, const Eigen::MatrixXd& out, bool adjoint) const;
+  mutable TimeModes modes_;
+  mutable Pencil pencil_;
 };
 
 }  // namespace whirl::solve
