@@ -32,8 +32,8 @@ port_elimination port_krylov port_layout port_maker port_matrix matrix_rows thin
 scaled_point thin_blocks linear_part thin_interval spread_interval interval own_block own_blocks own_shape small_blocks pencil
 time_modes mode_composition mode_system dense_composition sweep_composition sweep_system composition cycle_matrix cycle_layout
 film_march dominant_subspace spread_subspace spread_layout
-runge_kutta dense_stage structured_rate structured_stage sparse_stage
-bordered_monodromy nearest_eigenvalues thin_inverse equations
+runge_kutta dense_stage structured_rate structured_stage sparse_stage thin_stage
+bordered_monodromy nearest_eigenvalues equations
 entry_stream sparse_lu pencil_lu pivoted_lu dense_lu direct_solver least_squares symmetric shell
 """.split()
 WRAPPERS = {"DenseLu", "SparseLu", "PivotedLu"}

@@ -9,7 +9,7 @@
 #include "film/gas_cases.hpp"
 #include "support/finite_rotor.hpp"
 #include "support/train_system.hpp"
-#include "transient/steps/thin_steps.hpp"
+#include "transient/steps/sdirk_steps.hpp"
 #include "whirl/transient/steps/integrator.hpp"
 
 using namespace whirl;
@@ -73,7 +73,7 @@ TEST(ThinMotion, StepsAllocateNothing) {
   core::Vector u = equations.make_state();
   equations.scale(x.get(), u.get());
   const solve::Tableau tableau = solve::sdirk(4);
-  transient::ThinSteps steps(equations, tableau, 1e-3);
+  transient::SdirkSteps steps(equations, tableau, 1e-3);
   const auto take = [&](int first, int count) {
     for (int k = first; k < first + count; ++k) EXPECT_EQ(steps.step(k * length, length, u.get()).length, length);
   };

@@ -9,30 +9,26 @@ namespace {
 using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
-using Eigen::Ref;
 using Eigen::VectorXd;
 
 class DenseStage final : public Stage {
 public:
-  explicit DenseStage(problem::ScaledPoint& point) : point_(point) {}
+  DenseStage(problem::ScaledPoint& point, long& count) : point_(point), count_(count) {}
 
-  void residual(const StageGroup& group, const MatrixXd& x, const MatrixXd& k, MatrixXd& f) override {
-    f.resize(x.rows(), x.cols());
+  void residual(const StageGroup& group, In x, In k, Out f, bool) override {
     for (Index j = 0; j < x.cols(); ++j) point_.residual(group.angle(j), x.col(j), k.col(j), f.col(j));
   }
 
-  void factorise(const StageGroup& group, const MatrixXd& x, const MatrixXd& k) override {
-    linearise(group, x, k, false);
-  }
+  void factorise(const StageGroup& group, In x, In k) override { linearise(group, x, k, false); }
 
-  void solve(MatrixXd& f) const override {
+  void solve(Out f, double) override {
     Map<VectorXd> all(f.data(), f.size());
     all = lu_.solve(all);
   }
 
-  void keep(const StageGroup& group, const MatrixXd& x, const MatrixXd& k) override { linearise(group, x, k, true); }
+  void keep(const StageGroup& group, In x, In k) override { linearise(group, x, k, true); }
 
-  void slopes(const Ref<const MatrixXd>& w, bool loaded, Ref<MatrixXd> dk) const override {
+  void slopes(In w, bool loaded, Out dk) override {
     const Index n = jx_.rows();
     MatrixXd rhs(w.rows(), w.cols());
     for (Index j = 0; j < w.rows() / n; ++j)
@@ -43,7 +39,7 @@ public:
 
 private:
   // dF/dx is needed for slopes() only.
-  void linearise(const StageGroup& group, const MatrixXd& x, const MatrixXd& k, bool kept) {
+  void linearise(const StageGroup& group, In x, In k, bool kept) {
     const Index n = x.rows(), m = x.cols();
     MatrixXd matrix(m * n, m * n), jx, jxdot;
     VectorXd load;
@@ -60,9 +56,11 @@ private:
       load_.segment(j * n, n) = load;
     }
     lu_.compute(matrix);
+    ++count_;
   }
 
   problem::ScaledPoint& point_;
+  long& count_;               // of factorisations
   core::DenseLu<double> lu_;  // of all stages together
   MatrixXd jx_;               // side by side [n x n m]
   VectorXd load_;             // dF/dp
@@ -71,7 +69,7 @@ private:
 class DenseStages final : public Stages {
 public:
   explicit DenseStages(problem::ScaledPoint& point) : point_(point) {}
-  std::unique_ptr<Stage> make() override { return std::make_unique<DenseStage>(point_); }
+  std::unique_ptr<Stage> make() override { return std::make_unique<DenseStage>(point_, factorisations_); }
 
 private:
   problem::ScaledPoint& point_;

@@ -71,9 +71,11 @@ void RungeKutta::find(Stage& stage) {
   double correction = 0, last = 0;
   for (int it = 0;; ++it) {
     place();
-    stage.residual(group_, x_, k_, f_);
-    if (it == 0 || !stages_->by_chords() || (it > 1 && correction > slow_chord * last)) stage.factorise(group_, x_, k_);
-    stage.solve(f_);
+    const bool renew = it == 0 || !stages_->by_chords() || (it > 1 && correction > slow_chord * last);
+    f_.resize(x_.rows(), x_.cols());
+    stage.residual(group_, x_, k_, f_, renew);
+    if (renew) stage.factorise(group_, x_, k_);
+    stage.solve(f_, 1);
     k_ -= f_;
     last = correction;
     correction = largest(f_);

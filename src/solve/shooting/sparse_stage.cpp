@@ -1,6 +1,7 @@
 // Stages of a system that may be distributed in space.
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "solve/newton/port_krylov.hpp"
 #include "solve/newton/port_maker.hpp"
 #include "whirl/core/dense_lu.hpp"
+#include "whirl/core/direct_solver.hpp"
 #include "whirl/core/index.hpp"
 #include "whirl/core/matrix_rows.hpp"
 #include "whirl/problem/spread_point.hpp"
@@ -33,7 +35,8 @@ constexpr PetscInt small = 64;
 struct Inverse {
   // y := matrix^-1 y [local x columns], to a relative residual where it iterates, else to rounding.
   std::function<void(Ref<MatrixXd> y, double tolerance)> solve;
-  std::shared_ptr<const PortMatrix> blocks{};  // the matrix if its parts are eliminated
+  std::shared_ptr<const PortMatrix> blocks{};  // the matrix if its parts are eliminated,
+  mutable core::Matrix whole{};                // or if MUMPS factorises it
 };
 using SharedInverse = std::shared_ptr<const Inverse>;
 
@@ -89,8 +92,12 @@ core::LinearSolver redundant_lu(MPI_Comm comm, Mat matrix) {
 
 class SparseStages final : public Stages {
 public:
-  SparseStages(problem::System& system, bool constant_rates)
-      : system_(system), constant_rates_(constant_rates), point_(system), maker_(PortMaker::make(system)) {
+  SparseStages(problem::System& system, bool constant_rates, bool whole)
+      : system_(system),
+        constant_rates_(constant_rates),
+        whole_(whole),
+        point_(system),
+        maker_(whole ? nullptr : PortMaker::make(system)) {
     for (core::Vector* v : {&x_, &k_, &f_}) *v = core::duplicate(point_.state_scale());
   }
   std::unique_ptr<Stage> make() override;
@@ -108,7 +115,12 @@ public:
 private:
   friend class SparseStage;
   // dF/d(dx/dt) + own dF/dx at x_ and k_.
-  [[nodiscard]] SharedInverse inverse(double angle, double own) {
+  [[nodiscard]] SharedInverse inverse(double angle, double own, const SharedInverse& before) {
+    if (before && before->whole) {
+      ++factorisations_;
+      point_.jacobian(angle, x_.get(), k_.get(), own, 1, before->whole);
+      return before;
+    }
     if (own != 0 && maker_) {
       point_.jacobian(angle, x_.get(), k_.get(), own, 1, scratch_);
       return by_parts(scratch_.get(), angle, own);
@@ -117,7 +129,7 @@ private:
     core::Matrix matrix;
     point_.jacobian(angle, x_.get(), k_.get(), own, 1, matrix);
     SharedInverse out = entry_by_entry(comm(), matrix.get());
-    if (!out) out = maker_ ? by_parts(matrix.get(), angle, own) : by_lu(matrix.get());
+    if (!out) out = maker_ ? by_parts(matrix.get(), angle, own) : by_lu(std::move(matrix));
     if (own == 0 && constant_rates_) rates_ = out;
     return out;
   }
@@ -135,7 +147,10 @@ private:
     const auto blocks = maker_->blocks(a);
     if (!krylov_) krylov_ = std::make_unique<PortKrylov>(*maker_->layout(), "stage_");
     std::shared_ptr<PortElimination> by = own != 0 ? similar_ : nullptr;
-    if (!by) by = maker_->eliminate(*blocks, angle, point_.x(), point_.xdot(), own);
+    if (!by) {
+      ++factorisations_;
+      by = maker_->eliminate(*blocks, angle, point_.x(), point_.xdot(), own);
+    }
     if (own != 0) similar_ = by;
     return std::make_shared<Inverse>(
         Inverse{[this, blocks, by](Ref<MatrixXd> y, double tolerance) {
@@ -144,16 +159,20 @@ private:
                 blocks});
   }
 
-  // On every rank; dense if it is small and on one rank.
-  [[nodiscard]] SharedInverse by_lu(Mat matrix) {
+  // By MUMPS, or on every rank; dense if it is small and on one rank.
+  [[nodiscard]] SharedInverse by_lu(core::Matrix matrix) {
+    ++factorisations_;
     if (core::size_of(comm()) == 1 && system_.size() <= small) {
-      const core::DenseLu<double> lu(core::dense(matrix));
+      const core::DenseLu<double> lu(core::dense(matrix.get()));
       return std::make_shared<Inverse>(Inverse{[lu](Ref<MatrixXd> y, double) { y = lu.solve(y); }});
     }
-    const auto solver = std::make_shared<core::LinearSolver>(redundant_lu(comm(), matrix));
-    return std::make_shared<Inverse>(Inverse{[this, solver](Ref<MatrixXd> y, double) {
+    const auto solver = std::make_shared<core::LinearSolver>(whole_ ? core::make_direct_solver(comm(), "stage_")
+                                                                    : redundant_lu(comm(), matrix.get()));
+    if (whole_) check(KSPSetOperators(solver->get(), matrix.get(), matrix.get()));
+    const auto act = [this, solver](Ref<MatrixXd> y, double) {
       by_columns(y, [&](Vec b, Vec x) { check(KSPSolve(solver->get(), b, x)); });
-    }});
+    };
+    return std::make_shared<Inverse>(Inverse{act, {}, whole_ ? std::move(matrix) : core::Matrix()});
   }
 
   // y := what act(b, x) makes x of b = y, column by column.
@@ -167,7 +186,7 @@ private:
   }
 
   problem::System& system_;
-  bool constant_rates_;
+  bool constant_rates_, whole_;
   problem::SpreadPoint point_;
   core::Vector x_, k_, f_;            // work space of the stages,
   core::Matrix scratch_;              // and a matrix: making one costs more than filling a small one
@@ -182,25 +201,27 @@ class SparseStage final : public Stage {
 public:
   explicit SparseStage(SparseStages& all) : all_(all) {}
 
-  void residual(const StageGroup& group, const MatrixXd& x, const MatrixXd& k, MatrixXd& f) override {
+  void residual(const StageGroup& group, In x, In k, Out f, bool) override {
     put(x.col(0), all_.x_.get());
     put(k.col(0), all_.k_.get());
     all_.point_.residual(group.angle(0), all_.x_.get(), all_.k_.get(), all_.f_.get());
     f = get(all_.f_.get());
   }
 
-  void factorise(const StageGroup& group, const MatrixXd&, const MatrixXd&) override {
+  void factorise(const StageGroup& group, In, In) override {
     own_ = group.own(0, 0);
-    inverse_ = all_.inverse(group.angle(0), own_);
+    inverse_ = all_.inverse(group.angle(0), own_, inverse_);
   }
 
-  void solve(MatrixXd& f) const override { inverse_->solve(f, own_ == 0 ? explicit_tolerance : correction_tolerance); }
+  void solve(Out f, double tolerance) override {
+    inverse_->solve(f, own_ == 0 ? explicit_tolerance : std::min(tolerance, correction_tolerance));
+  }
 
-  void keep(const StageGroup& group, const MatrixXd& x, const MatrixXd& k) override {
+  void keep(const StageGroup& group, In x, In k) override {
     const double angle = group.angle(0);
     put(x.col(0), all_.x_.get());
     put(k.col(0), all_.k_.get());
-    if (own_ != 0) factorise(group, x, k);
+    if (!inverse_ || group.own(0, 0) != 0) factorise(group, x, k);
     rates_.reset();
     if (inverse_->blocks && own_ != 0) {
       rates_ = all_.rate_blocks(angle);
@@ -221,7 +242,7 @@ public:
     load_ = get(all_.f_.get());
   }
 
-  void slopes(const Ref<const MatrixXd>& w, bool loaded, Ref<MatrixXd> dk) const override {
+  void slopes(In w, bool loaded, Out dk) override {
     if (rates_) {
       // own dF/dx w = A w - dF/d(dx/dt) w
       VectorXd moved(w.rows()), by_rates(w.rows());
@@ -256,8 +277,8 @@ std::unique_ptr<Stage> SparseStages::make() {
 
 }  // namespace
 
-std::unique_ptr<Stages> sparse_stages(problem::System& system, bool constant_rates) {
-  return std::make_unique<SparseStages>(system, constant_rates);
+std::unique_ptr<Stages> sparse_stages(problem::System& system, bool constant_rates, bool whole) {
+  return std::make_unique<SparseStages>(system, constant_rates, whole);
 }
 
 }  // namespace whirl::solve

@@ -14,7 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
-using Eigen::Ref;
 using Eigen::VectorXd;
 
 constexpr double digits_lost = 1e-11;  // of a band: then rows are exchanged
@@ -30,24 +29,24 @@ class StructuredStage final : public Stage {
 public:
   explicit StructuredStage(StructuredRate& rate) : rate_(rate) {}
 
-  void residual(const StageGroup& group, const MatrixXd& x, const MatrixXd& k, MatrixXd& f) override {
+  void residual(const StageGroup& group, In x, In k, Out f, bool) override {
     f = k - rate_.evaluate(group.angle(0), x.col(0), a_, d_parameter_);
   }
 
-  void factorise(const StageGroup& group, const MatrixXd&, const MatrixXd&) override {
+  void factorise(const StageGroup& group, In, In) override {
     implicit_ = !group.is_explicit();
     if (implicit_) factorise_bands(group.own(0, 0));
   }
 
-  void solve(MatrixXd& f) const override {
+  void solve(Out f, double) override {
     if (implicit_) solve_bands(f.data());
   }
 
   // Those of the last iteration serve.
-  void keep(const StageGroup&, const MatrixXd&, const MatrixXd&) override {}
+  void keep(const StageGroup&, In, In) override {}
 
   // dk = (I - own A)^-1 (A w + df/dp)
-  void slopes(const Ref<const MatrixXd>& w, bool loaded, Ref<MatrixXd> dk) const override {
+  void slopes(In w, bool loaded, Out dk) override {
     for (Index c = 0; c < w.cols(); ++c) {
       if (w.col(c).isZero(0))
         dk.col(c).setZero();
@@ -68,7 +67,7 @@ private:
     MatrixXd inputs;    // C of the seen inputs [seen x n]
   };
   void factorise_bands(double own);
-  void solve_bands(double* r) const;  // in place
+  void solve_bands(double* r);  // in place
 
   StructuredRate& rate_;
   RateMatrix a_;
@@ -76,7 +75,7 @@ private:
   std::vector<Part> parts_;
   core::DenseLu<double> border_;
   VectorXd d_parameter_;
-  mutable VectorXd ends_;  // X
+  VectorXd ends_;  // X
 };
 
 void StructuredStage::factorise_bands(double own) {
@@ -155,7 +154,7 @@ void StructuredStage::factorise_bands(double own) {
   ends_.resize(size);
 }
 
-void StructuredStage::solve_bands(double* r) const {
+void StructuredStage::solve_bands(double* r) {
   const Index n = rate_.coordinates();
   ends_.head(n) = Map<const VectorXd>(r, n);
   Index end = n;

@@ -1,16 +1,18 @@
 #include "transient/steps/equations.hpp"
 
+#include <cmath>
+
 #include "whirl/core/error.hpp"
 #include "whirl/core/local_part.hpp"
 #include "whirl/core/plan.hpp"
-#include "whirl/core/shell.hpp"
 
 namespace whirl::transient {
 namespace {
 
 using core::check;
+using Eigen::VectorXd;
 
-// Sparse factors of a film on one rank: beyond, MUMPS is quicker than Eigen.
+// Sparse factors of a film on one rank: beyond, MUMPS is quicker.
 constexpr PetscInt most_own_states = 50000;
 
 bool is_thin(problem::System& system, Algebra algebra) {
@@ -19,93 +21,39 @@ bool is_thin(problem::System& system, Algebra algebra) {
   return s && system.size() - s->size() <= most_own_states;
 }
 
-// The Jacobian of a system whose dense factors are cheaper than MUMPS's; null of others.
-core::Matrix small_matrix(problem::System& system) {
-  if (core::size_of(system.comm()) > 1) return {};
+bool is_dense(problem::System& system) {
+  if (core::size_of(system.comm()) > 1) return false;
   MatInfo info;
-  core::Matrix jacobian = system.make_jacobian();
+  const core::Matrix jacobian = system.make_jacobian();
   check(MatGetInfo(jacobian.get(), MAT_LOCAL, &info));
   const auto way = core::plan::step(system.size(), static_cast<std::int64_t>(info.nz_allocated));
   core::plan::note(way);
-  return way == core::plan::StepWay::dense ? std::move(jacobian) : core::Matrix();
+  return way == core::plan::StepWay::dense;
 }
 
 }  // namespace
 
 Equations::Equations(problem::System& system, const problem::Drive& drive, Algebra algebra)
-    : system_(system), drive_(drive), gate_(system.comm()), thin_(is_thin(system, algebra)) {
+    : system_(system), drive_(drive), thin_(is_thin(system, algebra)) {
   core::require(drive.acceleration == 0 || system.parameter_is_speed(),
                 "an accelerated shaft needs the speed as parameter");
   if (system.parameter_is_speed()) system.set_parameter(drive.speed);
   turned_ = system.parameter();
   state_scale_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
-  residual_scale_ = core::duplicate(state_scale_.get());
-  inverse_ = core::duplicate(state_scale_.get());
-  system.scales(state_scale_.get(), residual_scale_.get());
-  check(VecCopy(residual_scale_.get(), inverse_.get()));
-  check(VecReciprocal(inverse_.get()));
-  x_ = core::duplicate(state_scale_.get());
-  xdot_ = core::duplicate(state_scale_.get());
+  check(VecGetOwnershipRange(state_scale_.get(), &begin_, nullptr));
+  const core::Vector residual_scale = make_state();
+  system.scales(state_scale_.get(), residual_scale.get());
+  inverse_ = core::get(residual_scale.get()).cwiseInverse();
   if (thin_) {
-    point_ = std::make_unique<problem::ScaledPoint>(system, system.structure(), true);
-    point_->refresh();
-    f_.resize(system.size());
+    stages_ = solve::thin_stages(system);
+  } else if (is_dense(system)) {
+    point_ = std::make_unique<problem::ScaledPoint>(system, nullptr);
+    stages_ = solve::dense_stages(*point_);
   } else {
-    sparse_ = small_matrix(system);
+    stages_ = solve::sparse_stages(system, false, true);
   }
-}
-
-ThinOperator& Equations::operator_of(Mat m) {
-  for (const auto& [matrix, meaning] : operators_)
-    if (matrix == m) return *meaning;
-  throw core::Bug("a matrix that these equations did not make");
-}
-
-core::Matrix Equations::make_matrix() {
-  if (thin_) {
-    auto a = std::make_shared<ThinOperator>();
-    core::Matrix m = core::make_shell(PETSC_COMM_SELF, system_.size(), gate_, [this, a](Vec x, Vec y) {
-      Eigen::VectorXd v, out(system_.size());
-      core::get(x, v);
-      point_->times(a->at, a->alpha * v, a->sigma * v, out);
-      core::put(out, y);
-    });
-    operators_.emplace_back(m.get(), std::move(a));
-    return m;
-  }
-  if (!sparse_) return system_.make_jacobian();
-  core::Matrix m;
-  check(MatCreateSeqDense(PETSC_COMM_SELF, system_.size(), system_.size(), nullptr, m.put()));
-  check(MatAssemblyBegin(m.get(), MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(m.get(), MAT_FINAL_ASSEMBLY));
-  return m;
-}
-
-void Equations::configure(KSP ksp) {
-  check(KSPSetType(ksp, KSPPREONLY));
-  PC pc = nullptr;
-  check(KSPGetPC(ksp, &pc));
-  if (thin_) {
-    auto inverse = std::make_shared<ThinInverse>(*point_, *system_.structure());
-    inverses_.push_back(inverse);
-    core::set_shell(pc, gate_,
-                    [this, ksp, inverse, y = Eigen::VectorXd(), x = Eigen::VectorXd()](Vec in, Vec out) mutable {
-                      Mat a = nullptr;
-                      check(KSPGetOperators(ksp, &a, nullptr));
-                      core::get(in, y);
-                      inverse->solve(operator_of(a), y, x);
-                      core::put(x, out);
-                    });
-    return;
-  }
-  check(PCSetType(pc, PCLU));
-  if (!sparse_) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-}
-
-void Equations::forget() {
-  std::erase_if(inverses_, [](const auto& i) { return i.expired(); });
-  for (const auto& i : inverses_)
-    if (const auto inverse = i.lock()) inverse->forget();
+  group_ = {VectorXd::Zero(1), Eigen::MatrixXd::Zero(1, 1)};
+  forget();
 }
 
 void Equations::scale(Vec x, Vec u) const {
@@ -116,6 +64,11 @@ void Equations::unscale(Vec u, Vec x) const {
   check(VecPointwiseMult(x, u, state_scale_.get()));
 }
 
+double Equations::root_mean(double squares) const {
+  if (core::size_of(system_.comm()) > 1) MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPI_DOUBLE, MPI_SUM, system_.comm());
+  return std::sqrt(squares / static_cast<double>(system_.size()));
+}
+
 void Equations::turn(double t) {
   if (drive_.acceleration == 0) return;
   const double speed = drive_.speed_at(t);
@@ -123,134 +76,63 @@ void Equations::turn(double t) {
   if (speed != system_.parameter()) system_.set_parameter(speed);
   if (speed == turned_) return;
   turned_ = speed;
-  if (point_) point_->refresh_speed();
+  stages_->refresh();
 }
 
-// With tangents where they cost little: those of films without own states come with their forces.
-void Equations::thin_residual(double t, Vec u, Vec udot) {
-  core::get(u, u_);
-  core::get(udot, udot_);
-  time_ = t;
-  tangents_ = false;
-  const bool cheap = point_->own_states() == 0;
-  residual(t, u_, udot_, f_, cheap ? &at_ : nullptr);
-  tangents_ = cheap;
-}
-
-void Equations::residual(double t, Vec u, Vec udot, Vec f) {
-  if (thin_) {
-    f_.resize(system_.size());
-    thin_residual(t, u, udot);
-    return core::put(f_, f);
-  }
-  free_residual(t, u, udot, f);
-  if (forces_) forces_->subtract(t, inverse_.get(), f);
-}
-
-void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
+void Equations::residual(solve::Stage& stage, double t, const VectorXd& u, const VectorXd& udot, VectorXd& f,
+                         bool ready) {
   ++residuals_;
   turn(t);
-  const double angle = drive_.angle_at(t);
-  unscale(u, x_.get());
-  unscale(udot, xdot_.get());
-  system_.residual(angle, x_.get(), xdot_.get(), f);
-  check(VecPointwiseMult(f, f, inverse_.get()));
-}
-
-void Equations::residual(double t, const Eigen::VectorXd& u, const Eigen::VectorXd& udot, Eigen::VectorXd& f,
-                         problem::PointState* keep) {
-  ++residuals_;
-  turn(t);
-  if (keep)
-    point_->residual(drive_.angle_at(t), u, udot, f, *keep);
-  else
-    point_->residual(drive_.angle_at(t), u, udot, f);
-  if (!forces_) return;
-  const core::ReadArray factor(inverse_.get());
+  group_.angle(0) = drive_.angle_at(t);
+  f.resize(u.size());
+  stage.residual(group_, u, udot, f, ready);
   const auto n = static_cast<std::size_t>(f.size());
-  forces_->subtract(t, 0, {factor.data(), n}, {f.data(), n});
+  if (forces_) forces_->subtract(t, begin_, {inverse_.data(), n}, {f.data(), n});
 }
 
-void Equations::jacobian(double t, Vec u, Vec udot, double alpha, double sigma, Mat j) {
+void Equations::factorise(solve::Stage& stage, double own, const VectorXd& u, const VectorXd& udot, bool lagging) {
+  ++jacobians_;
+  group_.own(0, 0) = own;
+  group_.lagging = lagging;
+  stages_->begin_step();
+  stage.factorise(group_, u, udot);
+}
+
+void Equations::keep(solve::Stage& stage, double t, double own, const VectorXd& u, const VectorXd& udot) {
   ++jacobians_;
   turn(t);
-  const double angle = drive_.angle_at(t);
-  if (thin_) {
-    const core::ReadArray a(u), b(udot);
-    const Eigen::Map<const Eigen::VectorXd> value(a.data(), a.size()), rate(b.data(), b.size());
-    if (!tangents_ || t != time_ || u_ != value || udot_ != rate) {
-      u_ = value;
-      udot_ = rate;
-      time_ = t;
-      tangents_ = false;
-      f_.resize(system_.size());
-      point_->residual(angle, u_, udot_, f_, at_);
-      tangents_ = true;
-    }
-    ThinOperator& of = operator_of(j);
-    of.alpha = alpha;
-    of.sigma = sigma;
-    of.parameter = system_.parameter();
-    of.at = at_;
-    ++of.version;
-    check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
-    return;
-  }
-  unscale(u, x_.get());
-  unscale(udot, xdot_.get());
-  Mat to = sparse_ ? sparse_.get() : j;
-  system_.jacobian(angle, x_.get(), xdot_.get(), alpha, sigma, to);
-  check(MatDiagonalScale(to, inverse_.get(), state_scale_.get()));
-  if (to != j) check(MatConvert(to, MATSEQDENSE, MAT_REUSE_MATRIX, &j));
+  group_.angle(0) = drive_.angle_at(t);
+  group_.own(0, 0) = own;
+  group_.lagging = false;
+  stages_->begin_step();
+  stage.keep(group_, u, udot);
 }
 
-core::LinearSolver Equations::make_solver(const std::string& prefix) {
-  core::LinearSolver out;
-  check(KSPCreate(system_.comm(), out.put()));
-  check(KSPSetOptionsPrefix(out.get(), prefix.c_str()));
-  configure(out.get());
-  check(KSPSetFromOptions(out.get()));
-  return out;
-}
-
-bool Equations::solve(KSP ksp, Mat matrix, Vec b, Vec x) {
-  check(KSPSetOperators(ksp, matrix, matrix));
-  gate_.rethrow(KSPSolve(ksp, b, x));
-  return core::reason_of(ksp) > 0;
-}
-
-void Equations::rate(double t, Vec u, Vec udot) {
-  if (!rates_) {
-    rates_ = make_matrix();
-    rate_solver_ = make_solver("rates_");
-    f_rate_ = make_state();
-    change_ = make_state();
-  }
-  check(VecSet(udot, 0));
+void Equations::rate(double t, const VectorXd& u, VectorXd& udot) {
+  udot.setZero(u.size());
   // The first pass finds the rates of films' states, the second one the forces that are cut off at these.
-  const int passes = thin_ && point_->own_states() == 0 ? 1 : 2;
-  for (int pass = 0; pass < passes; ++pass) {
-    residual(t, u, udot, f_rate_.get());
-    jacobian(t, u, udot, 0, 1, rates_.get());
-    if (!solve(rate_solver_.get(), rates_.get(), f_rate_.get(), change_.get()))
+  for (int pass = 0; pass < (thin_ && stages_->derivative_is_free() ? 1 : 2); ++pass) {
+    residual(*rates_, t, u, udot, f_, true);
+    factorise(*rates_, 0, u, udot);
+    rates_->solve(f_, tolerance());
+    if (!std::isfinite(root_mean(f_.squaredNorm())))
       throw core::NotConverged("the rates do not follow from the states: dF/d(dx/dt) is singular");
-    check(VecAXPY(udot, -1, change_.get()));
+    udot -= f_;
   }
 }
 
 std::string Equations::why_singular(double t, Vec u) {
   turn(t);
   const core::Matrix m = system_.make_jacobian();
-  unscale(u, x_.get());
-  check(VecSet(xdot_.get(), 0));
-  system_.jacobian(drive_.angle_at(t), x_.get(), xdot_.get(), 0, 1, m.get());
-  const core::Vector largest = core::duplicate(x_.get());
-  check(MatGetRowMaxAbs(m.get(), largest.get(), nullptr));
+  const core::Vector x = make_state(), rest = make_state();
+  check(VecSet(rest.get(), 0));
+  unscale(u, x.get());
+  system_.jacobian(drive_.angle_at(t), x.get(), rest.get(), 0, 1, m.get());
+  check(MatGetRowMaxAbs(m.get(), x.get(), nullptr));
   const std::vector<problem::Field> fields = system_.fields();
   int field = 0;  // number of the first one with such a row, from 1
   {
-    const core::ReadArray a(largest.get());
+    const core::ReadArray a(x.get());
     for (std::size_t k = fields.size(); k-- > 0;)
       fields[k].each([&](PetscInt row) {
         if (a[row] == 0) field = static_cast<int>(k) + 1;

@@ -1,22 +1,18 @@
 #pragma once
-// F and J over time, in scaled states and residuals, as PETSc wants them.
+// F over time, in scaled states and residuals, and stages that solve it.
 
 #include <memory>
-#include <utility>
-#include <vector>
+#include <string>
 
-#include "transient/steps/thin_inverse.hpp"
-#include "whirl/core/gate.hpp"
 #include "whirl/problem/drive.hpp"
 #include "whirl/problem/scaled_point.hpp"
-#include "whirl/problem/system.hpp"
+#include "whirl/solve/shooting/runge_kutta.hpp"
 #include "whirl/transient/steps/integrator.hpp"
 
 namespace whirl::transient {
 
-/// F(angle(t), x, dx/dt)/residual_scale as a function of u = x/state_scale and du/dt.
-///
-/// A machine that tells its structure is never assembled on one rank: see ThinInverse. All members are collective.
+/// F(angle(t), x, dx/dt)/residual_scale - B f(t) as a function of u = x/state_scale and du/dt, this rank's rows; its
+/// matrices dF/d(du/dt) + own dF/du are those of solve::Stage. All members are collective.
 class Equations {
 public:
   Equations(problem::System& system, const problem::Drive& drive, Algebra algebra = Algebra::automatic);
@@ -24,71 +20,60 @@ public:
   Equations& operator=(const Equations&) = delete;
 
   [[nodiscard]] problem::System& system() const { return system_; }
-  /// Matrices are products only, of which configure() knows the inverse.
-  [[nodiscard]] bool thin() const { return thin_; }
-  [[nodiscard]] core::Vector make_state() const { return core::duplicate(state_scale_.get()); }
-  [[nodiscard]] core::Matrix make_matrix();
-  /// A solver of KSP for matrices of make_matrix(): ThinInverse, or LU with row exchanges.
-  void configure(KSP ksp);
-  /// What solvers of configure() and make_solver() keep from one matrix to the next: they depend on the next one only.
-  void forget();
-  [[nodiscard]] core::LinearSolver make_solver(const std::string& prefix);
-  /// x = matrix^-1 b; false if that failed.
-  [[nodiscard]] bool solve(KSP ksp, Mat matrix, Vec b, Vec x);
-  [[nodiscard]] problem::ScaledPoint& point() { return *point_; }
   [[nodiscard]] const problem::Drive& drive() const { return drive_; }
+  /// Stages are those of solve::thin_stages().
+  [[nodiscard]] bool thin() const { return thin_; }
+  [[nodiscard]] const solve::Stages& stages() const { return *stages_; }
+  /// Of Stage::solve(), where it is to be exact. Newton's method puts the rest right; on several ranks it is to go on
+  /// as on one.
+  [[nodiscard]] double tolerance() const { return thin_ ? 1e-6 : 1e-10; }
+  /// What is kept from one matrix to the next belongs to the stage.
+  [[nodiscard]] std::unique_ptr<solve::Stage> make_stage() const { return stages_->make(); }
+  [[nodiscard]] core::Vector make_state() const { return core::duplicate(state_scale_.get()); }
   /// Sets the speed of the shaft at `t`, where it changes.
   void turn(double t);
-  /// What callbacks throw leaves PETSc through it.
-  [[nodiscard]] core::Gate& gate() { return gate_; }
-
   void scale(Vec x, Vec u) const;
   void unscale(Vec u, Vec x) const;
-  /// Throws core::DomainError (agreed) outside the validity of a film.
-  void residual(double t, Vec u, Vec udot, Vec f);
-  /// F - B f(t) from now on; null: none. They outlive their use here.
+  /// The root of the mean over all states of what sums up to `squares` on this rank.
+  [[nodiscard]] double root_mean(double squares) const;
+  /// External forces f from now on; null: none. They outlive their use here.
   void act(const Forces* forces) { forces_ = forces; }
-  /// Of thin ones the same without PETSc; with `keep` the films' tangents stay in it.
-  void residual(double t, const Eigen::VectorXd& u, const Eigen::VectorXd& udot, Eigen::VectorXd& f,
-                problem::PointState* keep = nullptr);
-  /// j = alpha dF/du + sigma dF/d(du/dt)
-  void jacobian(double t, Vec u, Vec udot, double alpha, double sigma, Mat j);
+
+  /// f = F(t, u, udot) - B f(t); with `ready` factorise() follows. Throws core::DomainError (agreed) outside the
+  /// validity of a film.
+  void residual(solve::Stage& stage, double t, const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
+                Eigen::VectorXd& f, bool ready = false);
+  /// Stage::factorise() at the point of the last residual, and Stage::keep() at any.
+  void factorise(solve::Stage& stage, double own, const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
+                 bool lagging = false);
+  void keep(solve::Stage& stage, double t, double own, const Eigen::VectorXd& u, const Eigen::VectorXd& udot);
 
   /// The du/dt of F(t, u, du/dt) = 0, F being linear in it but for cut-offs, with a regular dF/d(du/dt).
-  void rate(double t, Vec u, Vec udot);
+  void rate(double t, const Eigen::VectorXd& u, Eigen::VectorXd& udot);
+  /// What rate() keeps from one call to the next.
+  void forget() { rates_ = make_stage(); }
   /// Which equations hold no rates, so that dF/d(du/dt) is singular at `u`: the states they belong to; empty if there
   /// are none.
   [[nodiscard]] std::string why_singular(double t, Vec u);
-  /// Evaluations by residual() and jacobian() so far.
+  /// Evaluations of F, and linearisations, so far.
   [[nodiscard]] long residuals() const { return residuals_; }
   [[nodiscard]] long jacobians() const { return jacobians_; }
 
 private:
-  /// Of assembled ones, without external forces.
-  void free_residual(double t, Vec u, Vec udot, Vec f);
-  [[nodiscard]] ThinOperator& operator_of(Mat m);
-  void thin_residual(double t, Vec u, Vec udot);
-
   problem::System& system_;
   problem::Drive drive_;
   const Forces* forces_ = nullptr;
-  core::Gate gate_;
   bool thin_ = false;
-  double turned_ = 0;  // the speed that `point_` is at
-  core::Vector state_scale_, residual_scale_, inverse_, x_, xdot_;
-  core::Matrix sparse_;                          // of small systems, whose matrices are dense copies of it
-  std::unique_ptr<problem::ScaledPoint> point_;  // of thin ones
-  Eigen::VectorXd u_, udot_, f_;
-  // Of thin ones: the point of the last residual and its tangents, and what matrices stand for.
-  double time_ = 0;
-  problem::PointState at_;
-  bool tangents_ = false;
+  double turned_ = 0;  // the speed that stages are at
+  PetscInt begin_ = 0;
+  core::Vector state_scale_;
+  Eigen::VectorXd inverse_;                      // of the residuals' scale
+  std::unique_ptr<problem::ScaledPoint> point_;  // of dense stages
+  std::unique_ptr<solve::Stages> stages_;
+  solve::StageGroup group_;
+  std::unique_ptr<solve::Stage> rates_;
+  Eigen::VectorXd f_;
   long residuals_ = 0, jacobians_ = 0;
-  std::vector<std::pair<Mat, std::shared_ptr<ThinOperator>>> operators_;
-  std::vector<std::weak_ptr<ThinInverse>> inverses_;  // of configure()
-  core::Matrix rates_;                                // of rate()
-  core::LinearSolver rate_solver_;
-  core::Vector f_rate_, change_;
 };
 
 }  // namespace whirl::transient

@@ -37,15 +37,4 @@ void Forces::subtract(double t, PetscInt begin, std::span<const double> factor, 
   }
 }
 
-void Forces::subtract(double t, Vec factor, Vec f) const {
-  PetscInt begin = 0;
-  core::check(VecGetOwnershipRange(f, &begin, nullptr));
-  const core::ReadArray by(factor);
-  const auto n = static_cast<std::size_t>(by.size());
-  PetscScalar* rows = nullptr;
-  core::check(VecGetArray(f, &rows));
-  subtract(t, begin, {by.data(), n}, {rows, n});
-  core::check(VecRestoreArray(f, &rows));
-}
-
 }  // namespace whirl::transient

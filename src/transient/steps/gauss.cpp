@@ -3,11 +3,12 @@
 #include <cmath>
 
 #include "whirl/core/dense_lu.hpp"
+#include "whirl/core/index.hpp"
+#include "whirl/core/local_part.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 
 namespace whirl::transient {
 
-using core::check;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
@@ -43,51 +44,50 @@ GaussSteps::GaussSteps(Equations& equations, int stages, double tolerance)
       inverse_(core::DenseLu<double>(tableau_.a).inverse()),
       lower_(core::DenseLu<double>(solve::lower_factor(tableau_.a)).inverse()),
       end_weights_(inverse_.transpose() * tableau_.b),
-      slope_(equations.make_state()),
-      work_(equations.make_state()),
-      rates_(equations.make_matrix()) {
-  for (int i = 0; i < stages; ++i) {
-    for (auto* list : {&values_, &changes_, &residuals_}) list->push_back(equations.make_state());
-    matrices_.push_back(equations.make_matrix());
-    solvers_.push_back(equations.make_solver("gauss_"));
-  }
+      stages_(static_cast<std::size_t>(stages)) {
+  forget();
 }
 
-bool GaussSteps::attempt(double time, double length, Vec u) {
-  const auto stages = values_.size();
-  const auto entry = [](const MatrixXd& m, std::size_t i, std::size_t j) {
-    return m(static_cast<Index>(i), static_cast<Index>(j));
-  };
-  for (auto& v : values_) check(VecCopy(u, v.get()));
-  check(VecSet(slope_.get(), 0));
-  equations_.jacobian(time, u, slope_.get(), 0, 1, rates_.get());
-  for (std::size_t i = 0; i < stages; ++i)
-    equations_.jacobian(time, u, slope_.get(), 1, entry(lower_, i, i) / length, matrices_[i].get());
+void GaussSteps::forget() {
+  for (auto& stage : stages_) stage = equations_.make_stage();
+}
+
+// With E = dF/d(du/dt), J = dF/du, own = h/l_ii and A = E + own J a change is own A^-1 (F - E s), where A^-1 E s = s +
+// own dk with J (s + own dk) + E dk = 0.
+bool GaussSteps::attempt(double time, double length) {
+  const Index n = start_.size(), stages = tableau_.stages();
+  values_ = start_.replicate(1, stages);
+  changes_.resize(n, stages);
+  residuals_.resize(n, stages);
+  moved_.resize(n, 1);
+  slope_.setZero(n);
+  for (Index i = 0; i < stages; ++i)
+    equations_.keep(*stages_[core::at(i)], time, length / lower_(i, i), start_, slope_);
   double last = 0;
   for (int k = 0; k < most_sweeps; ++k) {
-    for (std::size_t i = 0; i < stages; ++i) {
-      check(VecSet(slope_.get(), 0));
-      for (std::size_t j = 0; j < stages; ++j) {
-        check(VecWAXPY(work_.get(), -1, u, values_[j].get()));
-        check(VecAXPY(slope_.get(), entry(inverse_, i, j) / length, work_.get()));
-      }
-      equations_.residual(time + length * tableau_.c(static_cast<Index>(i)), values_[i].get(), slope_.get(),
-                          residuals_[i].get());
+    for (Index i = 0; i < stages; ++i) {
+      slope_ = (values_.colwise() - start_) * inverse_.row(i).transpose() / length;
+      value_ = values_.col(i);
+      equations_.residual(*stages_[core::at(i)], time + length * tableau_.c(i), value_, slope_, f_);
+      residuals_.col(i) = f_;
     }
     double moved = 0;
-    for (std::size_t i = 0; i < stages; ++i) {
-      check(VecSet(slope_.get(), 0));
-      for (std::size_t j = 0; j < i; ++j) check(VecAXPY(slope_.get(), entry(lower_, i, j) / length, changes_[j].get()));
-      check(MatMult(rates_.get(), slope_.get(), work_.get()));
-      check(VecAYPX(work_.get(), -1, residuals_[i].get()));
-      if (!equations_.solve(solvers_[i].get(), matrices_[i].get(), work_.get(), changes_[i].get())) return false;
-      double norm = 0;
-      check(VecNorm(changes_[i].get(), NORM_2, &norm));
-      moved = std::max(moved, norm);
+    for (Index i = 0; i < stages; ++i) {
+      const double own = length / lower_(i, i);
+      f_ = residuals_.col(i);
+      stages_[core::at(i)]->solve(f_, equations_.tolerance());
+      if (i > 0) {
+        slope_ = changes_.leftCols(i) * lower_.row(i).head(i).transpose() / length;
+        stages_[core::at(i)]->slopes(slope_, false, moved_);
+        f_ -= slope_ + own * moved_;
+      }
+      changes_.col(i) = own * f_;
+      const double part = equations_.root_mean(changes_.col(i).squaredNorm());
+      if (!std::isfinite(part)) return false;
+      moved = std::max(moved, part);
     }
-    for (std::size_t i = 0; i < stages; ++i) check(VecAXPY(values_[i].get(), -1, changes_[i].get()));
-    moved /= std::sqrt(static_cast<double>(equations_.system().size()));
-    if (!std::isfinite(moved) || (k > 5 && moved > 10 * last)) return false;
+    values_ -= changes_;
+    if (k > 5 && moved > 10 * last) return false;
     if (moved <= tolerance_) return true;
     last = moved;
   }
@@ -95,15 +95,11 @@ bool GaussSteps::attempt(double time, double length, Vec u) {
 }
 
 Taken GaussSteps::step(double time, double wanted, Vec u) {
+  core::get(u, start_);
   const Taken taken = take_step(wanted, 1, [&](double h) -> std::optional<double> {
-    return attempt(time, h, u) ? std::optional(0.0) : std::nullopt;
+    return attempt(time, h) ? std::optional(0.0) : std::nullopt;
   });
-  check(VecSet(slope_.get(), 0));
-  for (std::size_t i = 0; i < values_.size(); ++i) {
-    check(VecWAXPY(work_.get(), -1, u, values_[i].get()));
-    check(VecAXPY(slope_.get(), end_weights_(static_cast<Index>(i)), work_.get()));
-  }
-  check(VecAXPY(u, 1, slope_.get()));
+  core::put(start_ + (values_.colwise() - start_) * end_weights_, u);
   return {taken.length, taken.length, taken.rejected, taken.why};
 }
 

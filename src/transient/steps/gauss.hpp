@@ -20,21 +20,20 @@ public:
 
   [[nodiscard]] Taken step(double time, double wanted, Vec u) override;
   [[nodiscard]] Pace pace() const override { return Pace::to_samples; }
-  void forget() override {}
+  void forget() override;
+  void pass_break() override {}
 
 private:
-  [[nodiscard]] bool attempt(double time, double length, Vec u);
+  [[nodiscard]] bool attempt(double time, double length);
 
   Equations& equations_;
   solve::Tableau tableau_;
   double tolerance_;
   Eigen::MatrixXd inverse_, lower_;  // of A and of L
   Eigen::VectorXd end_weights_;      // of Y_i - u_0 in u_1 - u_0
-  std::vector<core::Vector> values_, changes_, residuals_;
-  core::Vector slope_, work_;
-  core::Matrix rates_;
-  std::vector<core::Matrix> matrices_;
-  std::vector<core::LinearSolver> solvers_;
+  std::vector<std::unique_ptr<solve::Stage>> stages_;
+  Eigen::VectorXd start_, value_, slope_, f_;
+  Eigen::MatrixXd values_, changes_, residuals_, moved_;  // of the stages [n x stages]; E^-1 of one
 };
 
 }  // namespace whirl::transient

@@ -1,18 +1,17 @@
 #include "whirl/transient/steps/integrator.hpp"
 
 #include <fmt/core.h>
-#include <petscts.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "transient/steps/adams_moulton.hpp"
 #include "transient/steps/equations.hpp"
+#include "transient/steps/explicit_steps.hpp"
 #include "transient/steps/gauss.hpp"
 #include "transient/steps/newmark.hpp"
+#include "transient/steps/sdirk_steps.hpp"
 #include "transient/steps/stages.hpp"
-#include "transient/steps/thin_steps.hpp"
 #include "transient/steps/ts_stepper.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/plan.hpp"
@@ -52,8 +51,7 @@ struct Integrator::Parts {
   core::Vector u;              // as told, and
   core::Vector front, before;  // at the end of the last step, and at its beginning
   std::unique_ptr<Stepper> stepper;
-  ThinSteps* thin = nullptr;  // the stepper if it is one of these
-  TsStepper* petsc = nullptr;
+  SdirkSteps* sdirk = nullptr;  // the stepper if it is this
   std::unique_ptr<StageTangents> carrier;
   Tangents* tangents = nullptr;
   bool algebraic = false;                  // some states have no rates, where deviations are carried
@@ -64,13 +62,6 @@ struct Integrator::Parts {
   std::string why = "the cause is not known";  // an attempt was last rejected
 
   void choose();
-  template <class Made, class... Words>
-  Made* hold(Words&&... words) {
-    auto made = std::make_unique<Made>(std::forward<Words>(words)...);
-    Made* out = made.get();
-    stepper = std::move(made);
-    return out;
-  }
   [[nodiscard]] std::string where() const {
     return fmt::format("the motion could not be continued beyond {}{:.9g} s{}: ", by_revolutions ? "" : "t = ", reached,
                        by_revolutions ? " of the revolution" : "");
@@ -119,7 +110,7 @@ struct Integrator::Parts {
     }
     if (tangents) {
       // The steps suit the deviations too: at an equilibrium the state alone would allow any.
-      const double error = carrier->propagate(reached + offset, taken.length, before.get(), *stepper, *tangents) /
+      const double error = carrier->propagate(reached + offset, taken.length, *sdirk, *tangents) /
                            (deviation_tolerance * options.tolerance);
       const double allowed = allowed_step(taken.length, error, tableau.order);
       if (error > 1) {
@@ -164,17 +155,19 @@ void Integrator::Parts::choose() {
     throw core::InputError(fmt::format(
         "{} iterates over the forces of films of a rotor that one rank holds whole; newmark does without", name_of(s)));
   if (fixed_point)
-    hold<NewmarkFixedPointSteps>(equations, singular.empty(), newton);
+    stepper = std::make_unique<NewmarkFixedPointSteps>(equations, singular.empty(), newton);
   else if (newmark)
-    hold<NewmarkSteps>(equations, linearised, singular.empty(), newton);
+    stepper = std::make_unique<NewmarkSteps>(equations, linearised, singular.empty(), newton);
   else if (std::holds_alternative<AdamsMoulton>(s))
-    hold<AdamsMoultonSteps>(equations);
+    stepper = std::make_unique<AdamsMoultonSteps>(equations);
+  else if (std::holds_alternative<RungeKutta4>(s))
+    stepper = std::make_unique<ClassicalSteps>(equations);
   else if (const auto* irk = std::get_if<Irk>(&s))
-    hold<GaussSteps>(equations, irk->stages, newton);
-  else if (std::holds_alternative<Sdirk4>(s) && equations.thin() && !core::plan::steps_by_petsc(options.prefix))
-    thin = hold<ThinSteps>(equations, tableau, options.tolerance);
+    stepper = std::make_unique<GaussSteps>(equations, irk->stages, newton);
+  else if (has_own_pace(s) || core::plan::steps_by_petsc(options.prefix))
+    stepper = std::make_unique<TsStepper>(equations, options);
   else
-    petsc = hold<TsStepper>(equations, options, tableau);
+    stepper.reset(sdirk = new SdirkSteps(equations, tableau, options.tolerance));
 }
 
 Integrator::Integrator(problem::System& system, problem::Drive drive, Vec x, IntegratorOptions options)
@@ -194,8 +187,7 @@ Integrator::~Integrator() = default;
 
 void Integrator::carry(Tangents* tangents) {
   Parts& p = *parts_;
-  if (tangents && !p.thin && !(p.petsc && p.petsc->type() == TSARKIMEX))
-    throw core::InputError("Lyapunov exponents need the scheme sdirk4");
+  if (tangents && !p.sdirk) throw core::InputError("Lyapunov exponents need the scheme sdirk4");
   core::require(!tangents || p.reached == p.time, "deviations begin at the end of a step");
   p.tangents = tangents;
   if (tangents && !p.carrier) {
@@ -215,6 +207,7 @@ void Integrator::restart(double time, double step) {
   check(VecCopy(p.u.get(), p.front.get()));
   p.stepper->forget();
   p.equations.forget();
+  if (p.carrier) p.carrier->forget();
 }
 
 void Integrator::close_revolution(double earlier) {
@@ -284,13 +277,7 @@ const problem::Drive& Integrator::drive() const {
 
 Integrator::Work Integrator::work() const {
   const Parts& p = *parts_;
-  Work work{p.steps, p.rejected, p.equations.residuals(), p.equations.jacobians(), p.equations.jacobians()};
-  if (p.thin) {
-    const ThinSteps::Work done = p.thin->work();
-    work.jacobians = done.tangents;
-    work.factorisations = done.factorisations;
-  }
-  return work;
+  return {p.steps, p.rejected, p.equations.residuals(), p.equations.jacobians(), p.equations.stages().factorisations()};
 }
 
 }  // namespace whirl::transient

@@ -7,7 +7,6 @@
 
 namespace whirl::transient {
 
-using core::check;
 using Eigen::VectorXd;
 
 namespace {
@@ -20,50 +19,43 @@ constexpr double rate_part = 1e-6;
 
 NewmarkSteps::NewmarkSteps(Equations& equations, bool linearised, bool regular, double tolerance)
     : equations_(equations),
-      linearised_(linearised),
       tolerance_(tolerance),
-      matrix_(equations.make_matrix()),
-      solver_(equations.make_solver("newmark_")),
-      regular_(regular) {
-  for (core::Vector* v : {&rate_, &end_, &end_rate_, &f_, &change_, &consistent_}) *v = equations.make_state();
-  if (linearised) rates_ = equations.make_matrix();
+      linearised_(linearised),
+      stage_(equations.make_stage()),
+      regular_(regular) {}
+
+void NewmarkSteps::forget() {
+  pass_break();
+  stage_ = equations_.make_stage();
 }
 
-void NewmarkSteps::set_rate(double length, Vec u, Vec rate) {
-  check(VecWAXPY(end_rate_.get(), -1, u, end_.get()));
-  check(VecAXPBY(end_rate_.get(), -kept(), sigma(length), rate));
+void NewmarkSteps::set_rate(double length, const VectorXd& u, const VectorXd& rate) {
+  end_rate_ = (end_ - u) / own(length) - kept() * rate;
 }
 
-bool NewmarkSteps::solve(double time, double length, Vec u, Vec rate) {
+bool NewmarkSteps::solve(double time, double length, const VectorXd& u, const VectorXd& rate) {
   if (!linearised_) return newton(time, length, u, rate);
-  const double to = time + length;
-  check(VecCopy(u, end_.get()));
-  // F + dF/du du + dF/du' (2/h du - 2 r_0) = 0, the step of Euler with r_0 once.
-  equations_.residual(to, u, rate, f_.get());
-  equations_.jacobian(to, u, rate, 1, sigma(length), matrix_.get());
-  equations_.jacobian(to, u, rate, 0, 1, rates_.get());
-  check(MatMult(rates_.get(), rate, change_.get()));
-  check(VecAXPY(f_.get(), -(1 + kept()), change_.get()));
-  if (!equations_.solve(solver_.get(), matrix_.get(), f_.get(), change_.get())) return false;
-  check(VecAXPY(end_.get(), -1, change_.get()));
+  // F + J du + E (2/h du - 2 r_0) = 0, the step of Euler with r_0 once; with A = E + own J, A^-1 E r_0 = r_0 + own dk.
+  equations_.residual(*stage_, time + length, u, rate, f_, true);
+  equations_.keep(*stage_, time + length, own(length), u, rate);
+  Eigen::MatrixXd dk(u.size(), 1);
+  stage_->solve(f_, equations_.tolerance());
+  stage_->slopes(rate, false, dk);
+  end_ = u - own(length) * (f_ - (1 + kept()) * (rate + own(length) * dk));
   set_rate(length, u, rate);
-  return true;
+  return std::isfinite(equations_.root_mean(end_.squaredNorm()));
 }
 
-bool NewmarkSteps::newton(double time, double length, Vec u, Vec rate) {
-  const double to = time + length;
-  check(VecCopy(u, end_.get()));
-  check(VecAXPY(end_.get(), length, rate));
+bool NewmarkSteps::newton(double time, double length, const VectorXd& u, const VectorXd& rate) {
+  end_ = u + length * rate;
   double last = 0;
   for (int k = 0; k < most_newton; ++k) {
     set_rate(length, u, rate);
-    equations_.residual(to, end_.get(), end_rate_.get(), f_.get());
-    equations_.jacobian(to, end_.get(), end_rate_.get(), 1, sigma(length), matrix_.get());
-    if (!equations_.solve(solver_.get(), matrix_.get(), f_.get(), change_.get())) return false;
-    check(VecAXPY(end_.get(), -1, change_.get()));
-    double moved = 0;
-    check(VecNorm(change_.get(), NORM_2, &moved));
-    moved /= std::sqrt(static_cast<double>(equations_.system().size()));
+    equations_.residual(*stage_, time + length, end_, end_rate_, f_, true);
+    equations_.factorise(*stage_, own(length), end_, end_rate_);
+    stage_->solve(f_, equations_.tolerance());
+    end_ -= own(length) * f_;
+    const double moved = own(length) * equations_.root_mean(f_.squaredNorm());
     if (!std::isfinite(moved)) return false;
     if (moved <= tolerance_) {
       set_rate(length, u, rate);
@@ -76,81 +68,75 @@ bool NewmarkSteps::newton(double time, double length, Vec u, Vec rate) {
 }
 
 // r_0, or a first step by Euler's method.
-void NewmarkSteps::begin(double time, double wanted, Vec u) {
+void NewmarkSteps::begin(double time, double wanted) {
   if (regular_) {
     try {
-      return equations_.rate(time, u, rate_.get());
+      return equations_.rate(time, start_, rate_);
     } catch (const core::NotConverged&) {
       regular_ = false;  // no row is zero, but some depend on each other
     }
   }
   euler_ = true;
-  check(VecSet(rate_.get(), 0));
+  rate_.setZero(start_.size());
   const double e = rate_part * wanted;
   try {
-    if (!newton(time, e, u, rate_.get())) return;
-    check(VecCopy(end_.get(), consistent_.get()));
-    if (!newton(time + e, e, consistent_.get(), rate_.get())) return;
+    if (!newton(time, e, start_, rate_)) return;
+    const VectorXd consistent = end_;
+    if (!newton(time + e, e, consistent, rate_)) return;
   } catch (const core::DomainError&) {
     return;
   }
-  check(VecCopy(end_rate_.get(), rate_.get()));
+  rate_ = end_rate_;
   euler_ = false;
 }
 
 Taken NewmarkSteps::step(double time, double wanted, Vec u) {
+  core::get(u, start_);
   euler_ = false;
-  if (!has_rate_) begin(time, wanted, u);
+  if (!has_rate_) begin(time, wanted);
   has_rate_ = true;
   const Taken taken = take_step(wanted, 1, [&](double h) -> std::optional<double> {
-    return solve(time, h, u, rate_.get()) ? std::optional(0.0) : std::nullopt;
+    return solve(time, h, start_, rate_) ? std::optional(0.0) : std::nullopt;
   });
-  check(VecCopy(end_.get(), u));
-  check(VecCopy(end_rate_.get(), rate_.get()));
+  core::put(end_, u);
+  rate_ = end_rate_;
   return {taken.length, taken.length, taken.rejected, taken.why};
 }
 
 NewmarkFixedPointSteps::NewmarkFixedPointSteps(Equations& equations, bool regular, double tolerance)
-    : NewmarkSteps(equations, false, regular, tolerance), inverse_(equations.point(), *equations.system().structure()) {
-  f_.resize(equations.system().size());
-}
+    : NewmarkSteps(equations, false, regular, tolerance), lagging_(equations.make_stage()) {}
 
 void NewmarkFixedPointSteps::forget() {
   NewmarkSteps::forget();
-  inverse_.forget();
+  lagging_ = equations_.make_stage();
+}
+
+void NewmarkFixedPointSteps::pass_break() {
+  NewmarkSteps::pass_break();
   has_matrix_ = false;
 }
 
-bool NewmarkFixedPointSteps::solve(double time, double length, Vec u, Vec rate) {
-  core::get(u, start_);
-  core::get(rate, start_rate_);
-  const double to = time + length, root_n = std::sqrt(static_cast<double>(start_.size()));
-  value_ = start_ + length * start_rate_;
+bool NewmarkFixedPointSteps::solve(double time, double length, const VectorXd& u, const VectorXd& rate) {
+  end_ = u + length * rate;
   double last = 0;
   for (int k = 0; k < most_fixed_point; ++k) {
-    slope_ = sigma(length) * (value_ - start_) - kept() * start_rate_;
+    set_rate(length, u, rate);
     // The matrix is that of a step of this length, at a place of the journals of some time ago.
-    const bool renew = !has_matrix_ || !inverse_.fits(1 / sigma(length), operator_.parameter);
-    equations().residual(to, value_, slope_, f_, renew ? &operator_.at : nullptr);
+    const solve::StepOf here{own(length), equations_.system().parameter()};
+    const bool renew = !has_matrix_ || !made_.is_near(here);
+    equations_.residual(*lagging_, time + length, end_, end_rate_, f_, renew);
     if (renew) {
-      operator_.alpha = 1;
-      operator_.sigma = sigma(length);
-      operator_.parameter = equations().system().parameter();
-      operator_.at.films.d_inputs.setZero();
-      for (core::PartResponse& own : operator_.at.films.own) own.inputs.setZero();
-      inverse_.factorise_at(operator_);
+      equations_.factorise(*lagging_, here.own, end_, end_rate_, true);
+      made_ = here;
       has_matrix_ = true;
     }
-    operator_.sigma = sigma(length);
-    inverse_.apply(operator_, f_, change_);
-    value_ -= change_;
-    const double moved = change_.norm() / root_n;
+    lagging_->solve(f_, 1);
+    end_ -= here.own * f_;
+    const double moved = here.own * equations_.root_mean(f_.squaredNorm());
     if (!std::isfinite(moved) || (k > 3 && moved > last)) return false;
     last = moved;
-    if (moved > tolerance()) continue;
-    slope_ = sigma(length) * (value_ - start_) - kept() * start_rate_;
-    core::put(value_, end());
-    core::put(slope_, end_rate());
+    if (moved > tolerance_) continue;
+    set_rate(length, u, rate);
     return true;
   }
   return false;

@@ -3,7 +3,6 @@
 
 #include "transient/steps/equations.hpp"
 #include "transient/steps/stepper.hpp"
-#include "transient/steps/thin_inverse.hpp"
 
 namespace whirl::transient {
 
@@ -30,30 +29,29 @@ public:
 
   [[nodiscard]] Taken step(double time, double wanted, Vec u) override;
   [[nodiscard]] Pace pace() const override { return Pace::to_samples; }
-  void forget() override { has_rate_ = false; }
+  void forget() override;
+  void pass_break() override { has_rate_ = false; }
 
 protected:
-  /// u_1 and r_1 in end() and end_rate() from u_0 and r_0; false if the iteration did not converge.
-  [[nodiscard]] virtual bool solve(double time, double length, Vec u, Vec rate);
-  [[nodiscard]] Equations& equations() { return equations_; }
-  [[nodiscard]] double tolerance() const { return tolerance_; }
-  [[nodiscard]] Vec end() const { return end_.get(); }
-  [[nodiscard]] Vec end_rate() const { return end_rate_.get(); }
-  /// r_1 = sigma (u_1 - u_0) - kept r_0.
-  [[nodiscard]] double sigma(double length) const { return (euler_ ? 1 : 2) / length; }
-  [[nodiscard]] double kept() const { return euler_ ? 0 : 1; }
-
-private:
-  void set_rate(double length, Vec u, Vec rate);
-  void begin(double time, double wanted, Vec u);
-  [[nodiscard]] bool newton(double time, double length, Vec u, Vec rate);
+  using Vector = Eigen::VectorXd;
+  /// u_1 and r_1 in end_ and end_rate_ from u_0 and r_0; false if the iteration did not converge.
+  [[nodiscard]] virtual bool solve(double time, double length, const Vector& u, const Vector& rate);
+  /// r_1 = (u_1 - u_0)/own - kept r_0.
+  [[nodiscard]] double own(double length) const { return length / (euler_ ? 1 : 2); }
+  void set_rate(double length, const Vector& u, const Vector& rate);
 
   Equations& equations_;
-  bool linearised_;
   double tolerance_;
-  core::Vector rate_, end_, end_rate_, f_, change_, consistent_;
-  core::Matrix matrix_, rates_;
-  core::LinearSolver solver_;
+  Vector end_, end_rate_, f_;
+
+private:
+  [[nodiscard]] double kept() const { return euler_ ? 0 : 1; }
+  void begin(double time, double wanted);
+  [[nodiscard]] bool newton(double time, double length, const Vector& u, const Vector& rate);
+
+  bool linearised_;
+  Vector start_, rate_;
+  std::unique_ptr<solve::Stage> stage_;
   bool regular_, has_rate_ = false, euler_ = false;
 };
 
@@ -64,13 +62,13 @@ class NewmarkFixedPointSteps final : public NewmarkSteps {
 public:
   NewmarkFixedPointSteps(Equations& equations, bool regular, double tolerance);
   void forget() override;
+  void pass_break() override;
 
 private:
-  [[nodiscard]] bool solve(double time, double length, Vec u, Vec rate) override;
-  ThinInverse inverse_;
-  ThinOperator operator_;
+  [[nodiscard]] bool solve(double time, double length, const Vector& u, const Vector& rate) override;
+  std::unique_ptr<solve::Stage> lagging_;
+  solve::StepOf made_{};
   bool has_matrix_ = false;
-  Eigen::VectorXd start_, start_rate_, value_, slope_, f_, change_;
 };
 
 }  // namespace whirl::transient

@@ -5,11 +5,9 @@
 #include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/local_part.hpp"
-#include "whirl/solve/shooting/runge_kutta.hpp"
 
 namespace whirl::transient {
 
-using core::check;
 using core::get;
 using core::put;
 using Eigen::Index;
@@ -23,7 +21,7 @@ Eigen::VectorXd embedded_weights(const solve::Tableau& t) {
   conditions.row(1) = t.c.head(4);
   conditions.row(2) = t.c.head(4).cwiseAbs2();
   conditions.row(3) = (t.a * t.c).head(4);
-  const Eigen::VectorXd wanted = Eigen::Vector4d(1, 1.0 / 2, 1.0 / 3, 1.0 / 6);
+  const VectorXd wanted = (VectorXd(4) << 1, 1.0 / 2, 1.0 / 3, 1.0 / 6).finished();
   Eigen::VectorXd b = Eigen::VectorXd::Zero(5);
   b.head(4) = core::DenseLu<double>(conditions).solve(wanted);
   return b;
@@ -50,33 +48,16 @@ StageTangents::StageTangents(Equations& equations, const solve::Tableau& tableau
     : equations_(equations),
       tableau_(tableau),
       estimate_(tableau.b - embedded_weights(tableau)),
-      to_slopes_(core::DenseLu<double>(tableau.a).inverse().transpose()) {
-  for (core::Vector* v : {&z_, &rhs_, &change_}) *v = equations.make_state();
-  matrix_ = equations.make_matrix();
-  at_rest_ = equations.make_matrix();
-  solver_ = equations.make_solver("motion_tangents_");
-}
+      stage_(equations.make_stage()) {}
 
-double StageTangents::propagate(double time, double length, Vec u, Stepper& stepper, const Tangents& tangents) {
+double StageTangents::propagate(double time, double length, const SdirkSteps& steps, const Tangents& tangents) {
   const Index s = tableau_.stages();
-  const VectorXd start = get(u);
-  MatrixXd values(start.size(), s), before(start.size(), tangents.count());
-  for (Index i = 0; i < s; ++i) values.col(i) = get(stepper.stage(static_cast<int>(i)));
+  MatrixXd before(steps.start().size(), tangents.count());
   for (int k = 0; k < tangents.count(); ++k) before.col(k) = get(tangents.column(k));
-  const MatrixXd slopes = (values.colwise() - start) * to_slopes_ / length;
   solve::carry_stages(tableau_, 1, length, before, w_, slopes_, [&](Index i, const MatrixXd& w, auto dk) {
-    const double own = length * tableau_.a(i, i), at = time + length * tableau_.c(i);
-    put(values.col(i), z_.get());
-    put(slopes.col(i), rhs_.get());
-    equations_.jacobian(at, z_.get(), rhs_.get(), own, 1, matrix_.get());
-    equations_.jacobian(at, z_.get(), rhs_.get(), 1, 0, at_rest_.get());
-    check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));
-    for (Index k = 0; k < w.cols(); ++k) {
-      put(-w.col(k), z_.get());
-      check(MatMult(at_rest_.get(), z_.get(), rhs_.get()));
-      check(KSPSolve(solver_.get(), rhs_.get(), change_.get()));
-      dk.col(k) = get(change_.get());
-    }
+    const VectorXd value = steps.start() + length * (steps.slopes() * tableau_.a.row(i).transpose());
+    equations_.keep(*stage_, time + length * tableau_.c(i), length * tableau_.a(i, i), value, steps.slopes().col(i));
+    stage_->slopes(w, false, dk);
   });
   ends_ = before;
   MatrixXd error = MatrixXd::Zero(before.rows(), before.cols());
@@ -97,14 +78,15 @@ void StageTangents::accept(Tangents& tangents) {
   for (int k = 0; k < tangents.count(); ++k) put(ends_.col(k), tangents.column(k));
 }
 
+// (E + h J)^-1 E v = v + h dk with J (v + h dk) + E dk = 0.
 void StageTangents::make_consistent(double time, double length, Vec u, Tangents& tangents) {
-  check(VecSet(z_.get(), 0));
-  equations_.jacobian(time, u, z_.get(), length, 1, matrix_.get());
-  equations_.jacobian(time, u, z_.get(), 0, 1, at_rest_.get());
-  check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));
+  const VectorXd value = get(u);
+  equations_.keep(*stage_, time, length, value, VectorXd::Zero(value.size()));
+  MatrixXd dk(value.size(), 1);
   for (int k = 0; k < tangents.count(); ++k) {
-    check(MatMult(at_rest_.get(), tangents.column(k), rhs_.get()));
-    check(KSPSolve(solver_.get(), rhs_.get(), tangents.column(k)));
+    const VectorXd v = get(tangents.column(k));
+    stage_->slopes(v, false, dk);
+    put(v + length * dk, tangents.column(k));
   }
 }
 

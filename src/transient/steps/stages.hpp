@@ -1,9 +1,7 @@
 #pragma once
 // The derivative of one diagonally implicit Runge-Kutta step.
 
-#include "transient/steps/equations.hpp"
-#include "transient/steps/stepper.hpp"
-#include "whirl/solve/shooting/tableau.hpp"
+#include "transient/steps/sdirk_steps.hpp"
 #include "whirl/transient/steps/tangents.hpp"
 
 namespace whirl::transient {
@@ -25,10 +23,11 @@ namespace whirl::transient {
 class StageTangents {
 public:
   StageTangents(Equations& equations, const solve::Tableau& tableau);
-  /// Carries all deviations over the last step of `stepper`, of `length` from `u` at `time`, for accept() to take over;
+  /// Carries all deviations over the last step of `steps`, of `length` from `time` on, for accept() to take over;
   /// returns the largest estimated error of any of them, relative to its length.
-  double propagate(double time, double length, Vec u, Stepper& stepper, const Tangents& tangents);
+  double propagate(double time, double length, const SdirkSteps& steps, const Tangents& tangents);
   void accept(Tangents& tangents);
+  void forget() { stage_ = equations_.make_stage(); }
   /// Where dF/d(du/dt) is singular a deviation must obey the equations without rates: one step of Euler's implicit
   /// scheme from `u` at `time`, so short that nothing else moves.
   void make_consistent(double time, double length, Vec u, Tangents& tangents);
@@ -37,11 +36,8 @@ private:
   Equations& equations_;
   const solve::Tableau& tableau_;
   Eigen::VectorXd estimate_;           // weights of the error of a step
-  Eigen::MatrixXd to_slopes_;          // A^-T: h K = (Y - u_0) A^-T
   Eigen::MatrixXd w_, slopes_, ends_;  // dZ_i, dK_i of all stages, and each direction after the step
-  core::Vector z_, rhs_, change_;
-  core::Matrix matrix_, at_rest_;
-  core::LinearSolver solver_;
+  std::unique_ptr<solve::Stage> stage_;
 };
 
 }  // namespace whirl::transient

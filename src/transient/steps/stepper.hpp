@@ -45,8 +45,6 @@ public:
   /// The rates jump where the next step begins, for a force has a break there.
   virtual void pass_break() { forget(); }
   [[nodiscard]] virtual Pace pace() const { return Pace::to_the_end; }
-  /// Y_i of the last step, for deviations; null of schemes that carry none.
-  [[nodiscard]] virtual Vec stage(int /*i*/) { return nullptr; }
 };
 
 inline void Stepper::interpolate(double /*time*/, Vec /*u*/) {

@@ -5,34 +5,19 @@
 #include <limits>
 #include <numbers>
 
-#include "transient/steps/stages.hpp"
-#include "whirl/core/dense_lu.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/from_options.hpp"
+#include "whirl/core/local_part.hpp"
+#include "whirl/core/shell.hpp"
 
 namespace whirl::transient {
 namespace {
 
 using core::check;
 
-constexpr const char* scheme_name = "whirl_sdirk4";
 // A scheme that goes its own pace takes no step longer than this part of a revolution, whose samples are interpolated.
 constexpr double longest_part = 1.0 / 16;
 constexpr std::size_t most_past = 6;
-
-// PETSc keeps schemes by name for the life of the process.
-void register_scheme(const solve::Tableau& t) {
-  static const bool done = [&] {
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a = t.a;
-    const Eigen::VectorXd estimate = embedded_weights(t);
-    const std::vector<double> none(static_cast<std::size_t>(a.size()), 0.0);
-    const auto s = static_cast<PetscInt>(t.stages());
-    check(TSARKIMEXRegister(scheme_name, t.order, s, a.data(), t.b.data(), t.c.data(), none.data(), none.data(),
-                            t.c.data(), estimate.data(), none.data(), 0, nullptr, nullptr));
-    return true;
-  }();
-  (void)done;
-}
 
 }  // namespace
 
@@ -44,35 +29,27 @@ SNES TsStepper::snes() const {
 
 PetscErrorCode TsStepper::form_residual(TS, PetscReal t, Vec u, Vec udot, Vec f, void* raw) {
   auto& self = *static_cast<TsStepper*>(raw);
-  core::Gate& gate = self.equations_.gate();
-  const PetscErrorCode code = gate.run([&] { self.equations_.residual(t, u, udot, f); });
-  return gate.domain_error() ? SNESSetFunctionDomainError(self.snes()) : code;
+  const PetscErrorCode code = self.gate_.run([&] {
+    core::get(u, self.value_);
+    core::get(udot, self.slope_);
+    self.equations_.residual(*self.stage_, t, self.value_, self.slope_, self.f_,
+                             self.equations_.stages().derivative_is_free());
+    core::put(self.f_, f);
+  });
+  return self.gate_.domain_error() ? SNESSetFunctionDomainError(self.snes()) : code;
 }
 
 PetscErrorCode TsStepper::form_jacobian(TS, PetscReal t, Vec u, Vec udot, PetscReal shift, Mat j, Mat, void* raw) {
   auto& self = *static_cast<TsStepper*>(raw);
-  core::Gate& gate = self.equations_.gate();
-  const PetscErrorCode code = gate.run([&] { self.equations_.jacobian(t, u, udot, 1, shift, j); });
-  return gate.domain_error() ? SNESSetJacobianDomainError(self.snes()) : code;
-}
-
-// PETSc gives no place for a context of its own here.
-PetscErrorCode TsStepper::keep_stage(TS ts, PetscReal, PetscInt stage, Vec* values) {
-  void* raw = nullptr;
-  PetscCall(TSGetApplicationContext(ts, &raw));
-  auto& self = *static_cast<TsStepper*>(raw);
-  if (static_cast<std::size_t>(stage) >= self.stages_.size()) return 0;
-  return VecCopy(values[stage], self.stages_[static_cast<std::size_t>(stage)].get());
-}
-
-PetscErrorCode TsStepper::form_rate(TS, PetscReal t, Vec u, Vec rate, void* raw) {
-  auto& self = *static_cast<TsStepper*>(raw);
-  core::Gate& gate = self.equations_.gate();
-  if (!self.left_.empty()) return VecSet(rate, 0);
-  const PetscErrorCode code = gate.run([&] { self.equations_.rate(t, u, rate); });
-  if (!gate.domain_error()) return code;
-  self.left_ = gate.domain_text();  // the step is worth nothing
-  return VecSet(rate, 0);
+  const PetscErrorCode code = self.gate_.run([&] {
+    core::get(u, self.value_);
+    core::get(udot, self.slope_);
+    self.own_ = 1 / shift;
+    self.equations_.keep(*self.stage_, t, self.own_, self.value_, self.slope_);
+    check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
+  });
+  return self.gate_.domain_error() ? SNESSetJacobianDomainError(self.snes()) : code;
 }
 
 void TsStepper::choose(const Scheme& scheme) {
@@ -90,20 +67,6 @@ void TsStepper::choose(const Scheme& scheme) {
     check(TSGetAdapt(ts, &adapt));
     check(TSAdaptSetType(adapt, TSADAPTBASIC));
     pace_ = Pace::by_itself;
-  } else if (std::holds_alternative<RungeKutta4>(scheme)) {
-    check(TSSetEquationType(ts, TS_EQ_EXPLICIT));
-    check(TSSetType(ts, TSRK));
-    check(TSRKSetType(ts, TSRK4));
-    check(TSSetRHSFunction(ts, nullptr, form_rate, this));
-    check(TSGetAdapt(ts, &adapt));
-    check(TSAdaptSetType(adapt, TSADAPTNONE));
-    pace_ = Pace::to_samples;
-    controlled_ = false;
-    return;
-  } else {
-    check(TSSetType(ts, TSARKIMEX));
-    check(TSARKIMEXSetType(ts, scheme_name));
-    check(TSARKIMEXSetFullyImplicit(ts, PETSC_TRUE));
   }
   check(TSSetEquationType(ts, TS_EQ_ODE_IMPLICIT));
   check(TSSetIFunction(ts, nullptr, form_residual, this));
@@ -115,23 +78,18 @@ double TsStepper::longest(double time) const {
   return std::min(longest_, longest_part * 2 * std::numbers::pi / std::abs(equations_.drive().speed_at(time)));
 }
 
-TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options, const solve::Tableau& tableau)
+TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options)
     : equations_(equations),
-      tableau_(tableau),
-      continuous_(continuous_weights(tableau)),
-      jacobian_(equations.make_matrix()),
-      u_(equations.make_state()),
-      start_(equations.make_state()) {
-  register_scheme(tableau);
-  for (Eigen::Index i = 0; i < tableau.stages(); ++i) stages_.push_back(equations.make_state());
+      gate_(equations.system().comm()),
+      stage_(equations.make_stage()),
+      u_(equations.make_state()) {
   problem::System& system = equations.system();
   check(TSCreate(system.comm(), ts_.put()));
   TS ts = ts_.get();
   check(TSSetOptionsPrefix(ts, options.prefix.c_str()));
   check(TSSetProblemType(ts, TS_NONLINEAR));
+  jacobian_ = core::make_shell(system.comm(), system.local_size(), gate_, {});
   choose(options.scheme);
-  check(TSSetApplicationContext(ts, this));
-  check(TSSetPostStage(ts, keep_stage));
   check(TSSetTolerances(ts, options.tolerance, nullptr, options.tolerance, nullptr));
   check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
   check(TSSetMaxTime(ts, 1e300));
@@ -151,13 +109,18 @@ TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options, con
   check(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
   KSP ksp = nullptr;
   check(SNESGetKSP(snes(), &ksp));
-  equations.configure(ksp);
+  check(KSPSetType(ksp, KSPPREONLY));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  core::set_shell(pc, gate_, [this](Vec in, Vec out) {
+    core::get(in, f_);
+    stage_->solve(f_, equations_.tolerance());
+    core::put(own_ * f_, out);
+  });
   core::set_from_options(ts);
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts, &adapt));
   check(TSAdaptGetStepLimits(adapt, nullptr, &longest_));
-  // Other schemes by PETSc's options: their own interpolation may be missing.
-  if (pace_ == Pace::to_the_end && type() != TSARKIMEX) pace_ = Pace::to_samples;
   check(TSSetSolution(ts, u_.get()));
   check(TSSetUp(ts));
 }
@@ -165,12 +128,12 @@ TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options, con
 void TsStepper::forget() {
   begun_ = false;
   past_.clear();
+  stage_ = equations_.make_stage();
   check(TSRestartStep(ts_.get()));
 }
 
-Taken TsStepper::try_step(double time, double wanted, Vec u) {
+Taken TsStepper::step(double time, double wanted, Vec u) {
   TS ts = ts_.get();
-  core::Gate& gate = equations_.gate();
   // A scheme of several steps finds its history as it left it.
   if (pace_ != Pace::by_itself || !begun_) {
     check(TSSetTime(ts, time));
@@ -188,17 +151,15 @@ Taken TsStepper::try_step(double time, double wanted, Vec u) {
     check(TSGetTimeStep(ts, &next));
     if (next > most) check(TSSetTimeStep(ts, most));
   }
-  left_.clear();
-  gate.rethrow(TSStep(ts));
+  gate_.rethrow(TSStep(ts));
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
   PetscReal now = 0, proposed = 0;
   check(TSGetConvergedReason(ts, &reason));
   check(TSGetTime(ts, &now));
   check(TSGetTimeStep(ts, &proposed));
-  if (!left_.empty()) throw core::DomainError(left_);
   if (reason < 0 || now == time) {
     begun_ = false;
-    if (!gate.domain_text().empty()) throw core::DomainError(gate.domain_text());
+    if (!gate_.domain_text().empty()) throw core::DomainError(gate_.domain_text());
     throw core::NotConverged(TSConvergedReasons[reason]);
   }
   check(VecCopy(u_.get(), u));
@@ -220,36 +181,7 @@ void TsStepper::remember(double time) {
   past_.emplace_front(time, std::move(copy));
 }
 
-Taken TsStepper::step(double time, double wanted, Vec u) {
-  check(VecCopy(u, start_.get()));
-  start_time_ = time;
-  if (controlled_) {
-    const Taken taken = try_step(time, wanted, u);
-    length_ = taken.length;
-    return taken;
-  }
-  // PETSc has no error to control here, and so no way to shorten a step that leaves a film.
-  const Taken taken = take_step(wanted, 1, [&](double h) -> std::optional<double> {
-    (void)try_step(time, h, u);
-    return 0.0;
-  });
-  return {taken.length, taken.length, taken.rejected, taken.why};
-}
-
 void TsStepper::interpolate(double time, Vec u) {
-  if (pace_ == Pace::to_the_end) {
-    // u_0 + h sum b_i(theta) K_i; PETSc's own takes the first stage for u_0, which holds for explicit ones only.
-    const double part = (time - start_time_) / length_;
-    Eigen::VectorXd weights = Eigen::VectorXd::Zero(tableau_.stages());
-    for (Eigen::Index p = continuous_.cols() - 1; p >= 0; --p) weights = part * (weights + continuous_.col(p));
-    // With h K = A^-1 (Y - u_0).
-    weights = core::DenseLu<double>(tableau_.a).solve_transposed(weights);
-    check(VecCopy(start_.get(), u));
-    check(VecScale(u, 1 - weights.sum()));
-    for (std::size_t i = 0; i < stages_.size(); ++i)
-      check(VecAXPY(u, weights(static_cast<Eigen::Index>(i)), stages_[i].get()));
-    return;
-  }
   // The polynomial through the last states: PETSc's own continuation of generalized-alpha is of order one.
   check(VecSet(u, 0));
   for (std::size_t k = 0; k < past_.size(); ++k) {
@@ -258,12 +190,6 @@ void TsStepper::interpolate(double time, Vec u) {
       if (l != k) weight *= (time - past_[l].first) / (past_[k].first - past_[l].first);
     check(VecAXPY(u, weight, past_[k].second.get()));
   }
-}
-
-std::string TsStepper::type() const {
-  TSType type = nullptr;
-  check(TSGetType(ts_.get(), &type));
-  return type;
 }
 
 }  // namespace whirl::transient

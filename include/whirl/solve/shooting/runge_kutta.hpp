@@ -2,6 +2,7 @@
 // One Runge-Kutta step on F(angle, x, dx/dt) = 0 with its exact derivatives, however its stages are solved.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -14,26 +15,49 @@ namespace whirl::solve {
 struct StageGroup {
   Eigen::VectorXd angle;  ///< [m]
   Eigen::MatrixXd own;    ///< H a(j,l) [m x m]
+  /// Matrices of thin stages leave out what the journals' motion does to forces and films.
+  bool lagging = false;
   [[nodiscard]] bool is_explicit() const { return own.isZero(0); }
+};
+
+/// What the matrix dF/d(dx/dt) + own dF/dx of a single stage belongs to, beside its point.
+struct StepOf {
+  double own = 0, parameter = 0;
+  /// Whether factors of this serve for the other one.
+  [[nodiscard]] bool is_near(const StepOf& other) const {
+    return std::abs(other.own - own) <= 0.1 * std::abs(own) &&
+           std::abs(other.parameter - parameter) <= 0.05 * std::abs(parameter);
+  }
+  /// By how much of an error at most they are off then: with A = L1 + own L0 and A_f of these, A_f^-1 A - 1 =
+  /// (own/own_f - 1) (1 - A_f^-1 L1), whose second factor is near one along stiff directions, zero along soft ones; the
+  /// part of L0 that goes with the speed is off by its ratio likewise. Films' own states apart.
+  [[nodiscard]] double mismatch(const StepOf& other) const {
+    return std::abs(other.own / own - 1) +
+           (other.parameter == parameter ? 0 : std::abs(other.parameter / parameter - 1));
+  }
 };
 
 /// F(angle_j, x_j, k_j) = 0 of such stages, x_j = base_j + sum_l own(j,l) k_l, and its derivative. Vectors are this
 /// rank's scaled rows, x, k and f are [n x m]. Collective.
 class Stage {
 public:
+  using In = const Eigen::Ref<const Eigen::MatrixXd>&;
+  using Out = Eigen::Ref<Eigen::MatrixXd>;
   virtual ~Stage() = default;
-  virtual void residual(const StageGroup& group, const Eigen::MatrixXd& x, const Eigen::MatrixXd& k,
-                        Eigen::MatrixXd& f) = 0;
+  /// With `ready` factorise() follows.
+  virtual void residual(const StageGroup& group, In x, In k, Out f, bool ready) = 0;
   /// Makes ready for solve() at the point of the last residual().
-  virtual void factorise(const StageGroup& group, const Eigen::MatrixXd& x, const Eigen::MatrixXd& k) = 0;
-  /// f := (dF/d(dx/dt) + own dF/dx)^-1 f
-  virtual void solve(Eigen::MatrixXd& f) const = 0;
-  /// Keeps the derivative at the stages that were found, for slopes().
-  virtual void keep(const StageGroup& group, const Eigen::MatrixXd& x, const Eigen::MatrixXd& k) = 0;
+  virtual void factorise(const StageGroup& group, In x, In k) = 0;
+  /// f := (dF/d(dx/dt) + own dF/dx)^-1 f, to the relative residual `tolerance` where it iterates; 1: as good as chords
+  /// want.
+  virtual void solve(Out f, double tolerance) = 0;
+  /// Keeps the derivative at the stages that were found, for slopes(), and makes ready for solve() there.
+  virtual void keep(const StageGroup& group, In x, In k) = 0;
   /// The dk of dF/dx (w + own dk) + dF/d(dx/dt) dk = 0 for each column of w; with `loaded` + dF/dp for the last. Both
   /// are [n m x columns], stage below stage.
-  virtual void slopes(const Eigen::Ref<const Eigen::MatrixXd>& w, bool loaded,
-                      Eigen::Ref<Eigen::MatrixXd> dk) const = 0;
+  virtual void slopes(In w, bool loaded, Out dk) = 0;
+  /// Step and parameter of the factors that solve() stands on; `asked` are those of the last factorise().
+  [[nodiscard]] virtual StepOf factors(StepOf asked) const { return asked; }
 };
 
 /// One way to solve stages.
@@ -51,6 +75,10 @@ public:
   [[nodiscard]] virtual double tolerance() const { return 1e-9; }
   /// A step makes its derivative on the way, so that both are best taken together.
   [[nodiscard]] virtual bool derivative_is_free() const { return false; }
+  [[nodiscard]] long factorisations() const { return factorisations_; }
+
+protected:
+  long factorisations_ = 0;
 };
 
 /// By dense matrices; the only one for coupled stages. `point` outlives it, and its owner refreshes it.
@@ -58,10 +86,13 @@ public:
 /// By the structure of a system whose dF/d(dx/dt) depends on nothing but the parameter; null where it tells none or has
 /// many coordinates beside its films' states.
 [[nodiscard]] std::unique_ptr<Stages> structured_stages(problem::System& system, const Tableau& tableau);
+/// By elimination of what hardly changes from step to step, for a system on one rank that tells its structure: the
+/// factors of its linear part and of its films' states are kept for many points.
+[[nodiscard]] std::unique_ptr<Stages> thin_stages(problem::System& system);
 /// Sparse, on system.comm(): by elimination of the parts of a system that has some, else by LU, or one pass over dF/dx
 /// where dF/d(dx/dt) of an explicit stage is inverted entry by entry. With `constant_rates`, dF/d(dx/dt) depends on
-/// nothing but the parameter.
-[[nodiscard]] std::unique_ptr<Stages> sparse_stages(problem::System& system, bool constant_rates);
+/// nothing but the parameter; with `whole`, matrices are factorised by MUMPS as they are, to serve many stages.
+[[nodiscard]] std::unique_ptr<Stages> sparse_stages(problem::System& system, bool constant_rates, bool whole = false);
 /// By structure where the rates are constant and the system tells it, else dense at `point`, or sparse if that is null.
 [[nodiscard]] std::unique_ptr<Stages> choose_stages(problem::System& system, const Tableau& tableau,
                                                     bool constant_rates, problem::ScaledPoint* point);

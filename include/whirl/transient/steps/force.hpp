@@ -36,8 +36,6 @@ public:
   /// rows -= factor B f(t) within the step entered; `rows` are those of F from `begin` on, each multiplied by its
   /// `factor`.
   void subtract(double t, PetscInt begin, std::span<const double> factor, std::span<double> rows) const;
-  /// The same of the rows of this rank.
-  void subtract(double t, Vec factor, Vec f) const;
 
 private:
   struct Part {

@@ -1,4 +1,4 @@
-#include "transient/steps/thin_steps.hpp"
+#include "transient/steps/sdirk_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Newton's method ends where its next change would be this part of the tolerance of a step.
-constexpr double newton_part = 1e-2;
 constexpr double rounding_part = 1e-13;  // of the states' scale: no change is smaller
 constexpr int most_changes = 10;
 constexpr double slow_ratio = 0.3;  // convergence that pays for new tangents
@@ -26,33 +24,29 @@ constexpr std::size_t most_nodes = 5;
 
 }  // namespace
 
-ThinSteps::ThinSteps(Equations& equations, const solve::Tableau& tableau, double tolerance)
+SdirkSteps::SdirkSteps(Equations& equations, const solve::Tableau& tableau, double tolerance, double newton)
     : equations_(equations),
       tableau_(tableau),
       tolerance_(tolerance),
+      newton_(newton),
       estimate_(tableau.b - embedded_weights(tableau)),
       continuous_(continuous_weights(tableau)),
-      inverse_(equations.point(), *equations.system().structure()) {
-  const auto n = static_cast<Index>(equations.system().size());
+      stage_(equations.make_stage()) {
+  const auto n = static_cast<Index>(equations.system().local_size());
   for (VectorXd* v : {&start_, &weights_, &known_, &value_, &slope_, &f_, &change_, &end_}) v->resize(n);
   slopes_.resize(n, tableau.stages());
   before_.resize(n, tableau.stages());
-  for (Index i = 0; i < tableau.stages(); ++i) stages_.push_back(equations.make_state());
 }
 
-void ThinSteps::forget() {
+void SdirkSteps::forget() {
   length_ = length_before_ = 0;
   has_tangents_ = careful_ = false;
   rate_ = 1;
-  inverse_.forget();
-}
-
-double ThinSteps::norm(const VectorXd& v) const {
-  return std::sqrt(v.cwiseProduct(weights_).squaredNorm() / static_cast<double>(v.size()));
+  stage_ = equations_.make_stage();
 }
 
 // By the polynomial through the slopes that lie nearest in time, of this step and of the last one.
-void ThinSteps::predict(Index i, double length) {
+void SdirkSteps::predict(Index i, double length) {
   nodes_.clear();
   const double wanted = tableau_.c(i);
   const auto add = [&](double at, const double* slope) {
@@ -72,9 +66,10 @@ void ThinSteps::predict(Index i, double length) {
   }
 }
 
-bool ThinSteps::solve_stage(Index i, double time, double length) {
+bool SdirkSteps::solve_stage(Index i, double time, double length) {
   const double own = length * tableau_.a(i, i), at = time + length * tableau_.c(i);
-  const bool cheap = equations_.point().own_states() == 0;
+  const bool cheap = equations_.stages().derivative_is_free();
+  const double tolerance = equations_.thin() ? 1 : equations_.tolerance();
   known_ = start_;
   if (i > 0) known_.noalias() += length * (slopes_.leftCols(i) * tableau_.a.row(i).head(i).transpose());
   predict(i, length);
@@ -83,30 +78,24 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
   // After a failure by Newton's method itself, with a matrix of its own for each change.
   const bool careful = careful_ && !cheap;
   // Of the same step in time and speed as the matrix, or nearly so.
-  bool renew = cheap || careful || !has_tangents_ || !inverse_.fits(own, equations_.system().parameter());
+  const solve::StepOf here{own, equations_.system().parameter()};
+  bool renew = cheap || careful || !has_tangents_ || !stage_->factors(made_).is_near(here);
   int renewals = 0;
   double last = 0, rate = std::pow(std::max(rate_, 1e-4), 0.8);
   for (int k = 0; k < most_changes; ++k) {
-    equations_.residual(at, value_, slope_, f_, renew ? &operator_.at : nullptr);
+    equations_.residual(*stage_, at, value_, slope_, f_, renew);
     if (renew) {
-      ++tangents_;
-      operator_.alpha = own;
-      operator_.sigma = 1;
-      operator_.parameter = equations_.system().parameter();
-      ++operator_.version;
-      if (cheap)
-        inverse_.place(operator_);
-      else
-        inverse_.factorise_at(operator_);
+      equations_.factorise(*stage_, own, value_, slope_);
+      made_ = here;
       has_tangents_ = true;
       ++renewals;
       renew = false;
       last = 0;
     }
-    inverse_.apply(operator_, f_, change_);  // of the slope
-    slope_ -= change_;
-    value_.noalias() -= own * change_;
-    const double moved = own * norm(change_);
+    stage_->solve(f_, tolerance);  // now the change of the slope
+    slope_ -= f_;
+    value_.noalias() -= own * f_;
+    const double moved = own * norm(f_);
     if (!std::isfinite(moved)) return false;
     const bool rounding = moved * tolerance_ < rounding_part;
     if (last > 0 && !rounding) {
@@ -128,9 +117,9 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
     // two changes tells the q of what they consist of, and that of an earlier stage, with other factors, nothing of
     // this one: where the factors are not of this tau and speed, an error along stiff directions shrinks by no more
     // than their mismatch, however small it is among the first changes.
-    const double q = inverse_.mismatch(own, equations_.system().parameter());
+    const double q = stage_->factors(made_).mismatch(here);
     // Careful, the change itself is small enough.
-    if (rounding || (careful ? 1 : std::max(rate, q / (1 - q))) * moved <= newton_part) {
+    if (rounding || (careful ? 1 : std::max(rate, q / (1 - q))) * moved <= newton_) {
       rate_ = rate;
       slopes_.col(i) = slope_;
       return true;
@@ -139,7 +128,7 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
   return false;
 }
 
-std::optional<double> ThinSteps::attempt(double time, double length) {
+std::optional<double> SdirkSteps::attempt(double time, double length) {
   weights_ = (tolerance_ * (1 + start_.array().abs())).inverse();
   for (Index i = 0; i < tableau_.stages(); ++i) {
     if (!solve_stage(i, time, length)) {
@@ -148,7 +137,6 @@ std::optional<double> ThinSteps::attempt(double time, double length) {
       has_tangents_ = false;
       return std::nullopt;
     }
-    core::put(value_, stages_[static_cast<std::size_t>(i)].get());
   }
   end_ = value_;
   weights_ = (tolerance_ * (1 + start_.array().abs().max(end_.array().abs()))).inverse();
@@ -156,7 +144,7 @@ std::optional<double> ThinSteps::attempt(double time, double length) {
   return norm(change_);
 }
 
-Taken ThinSteps::step(double time, double wanted, Vec u) {
+Taken SdirkSteps::step(double time, double wanted, Vec u) {
   core::get(u, start_);
   const Taken taken = take_step(wanted, tableau_.order, [&](double h) { return attempt(time, h); });
   careful_ = false;
@@ -167,7 +155,7 @@ Taken ThinSteps::step(double time, double wanted, Vec u) {
   return taken;
 }
 
-void ThinSteps::interpolate(double time, Vec u) {
+void SdirkSteps::interpolate(double time, Vec u) {
   const double part = (time - time_) / length_;
   VectorXd weights = VectorXd::Zero(tableau_.stages());
   for (Index p = continuous_.cols() - 1; p >= 0; --p) weights = part * (weights + continuous_.col(p));
