@@ -172,6 +172,34 @@ void CycleFollower::judge_multiplier(const Watched& at) {
                            bar.time_mesh, decided(modulus, total, 1) ? 1.0 : 0.0});
 }
 
+// Where the mesh leaves open on which side of the unit circle the leading multiplier is, and where it does not.
+void CycleFollower::doubt(BranchVerdict& verdict) {
+  const auto column = [this](const char* name) { return multiplier_bars_.column(name); };
+  std::optional<std::size_t> worst;
+  std::map<int, double> bars;
+  for (std::size_t k = 0; k < multiplier_bars_.rows(); ++k) {
+    const int point = static_cast<int>(column("point")[k]);
+    bars[point] = column("uncertainty")[k];
+    if (column("decided")[k] > 0) verdict.settle(point);
+    if (column("decided")[k] > 0) continue;
+    verdict.doubt(point);
+    const auto apart = [&](std::size_t row) { return std::abs(column("modulus")[row] - 1); };
+    if (!worst || apart(k) < apart(*worst)) worst = k;
+  }
+  if (!worst || verdict.text() != "undetermined") return;
+  // Between two points whose bars are known the larger one holds. A bar that is not a number decides nothing.
+  for (auto next = bars.begin(), last = next++; next != bars.end(); last = next++)
+    for (int k = last->first + 1; k < next->first; ++k)
+      if (const double m = record_.modulus(k); decided(m, last->second, 1) && decided(m, next->second, 1))
+        verdict.settle(k);
+  const double bar = column("uncertainty")[*worst];
+  context_.results.summary().warnings.push_back(fmt::format(
+      "at {:.6g} {} the largest multiplier has the modulus {:.4g}{}: this mesh does not tell whether the motion is "
+      "stable there. Use more intervals, a higher degree or a finer film mesh",
+      column("parameter")[*worst], unit_, column("modulus")[*worst],
+      std::isfinite(bar) ? fmt::format(" +- {:.2g}", bar) : ", and other meshes have no such motion"));
+}
+
 // The direction of the branch at its fold has no part in the parameter. It is that of the branch found: another
 // discretisation is not at a fold here, and its own direction would hold the parameter instead of the amplitude.
 solve::Cycle CycleFollower::along(const solve::LocatedEvent& found, const solve::Cycle& given) const {

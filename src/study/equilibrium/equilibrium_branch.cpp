@@ -93,9 +93,9 @@ std::vector<ContactThere> contacts_there(const Context& context, const Layout& l
       return margin_from(resampled(*other, system, std::vector<double>(known.data(), known.data() + known.size())));
     });
   };
-  const std::vector<double> places = distribute(layout, meshes.size(), on, pieces, "contact on mesh", no_trail);
   std::vector<ContactThere> out;
-  for (std::size_t k = 0; k < meshes.size(); ++k) out.push_back({meshes[k].axis, meshes[k].spacing, places[k]});
+  for (const double there : distribute(layout, meshes.size(), on, pieces, "contact on mesh", no_trail))
+    out.push_back({meshes[out.size()].axis, meshes[out.size()].spacing, there});
   return out;
 }
 
@@ -161,9 +161,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     x = first_guess(*system);
     if (problem::parts_of(system->fields()).size() > 0) {
       system->set_parameter(range.from);
-      core::Vector guess = core::duplicate(x.get());
-      check(VecCopy(x.get(), guess.get()));
-      if (!find_rest(*system, x.get()).converged) std::swap(x, guess);  // the branch says why
+      if (!find_rest(*system, x.get()).converged) x = first_guess(*system);  // the branch says why
     }
   }
   problem.from_state(x.get(), range.from, u.get());
