@@ -8,8 +8,7 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/from_options.hpp"
-#include "whirl/core/gate.hpp"
-#include "whirl/core/petsc.hpp"
+#include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -18,21 +17,9 @@ using core::check;
 using EigenSolver = core::Handle<EPS, EPSDestroy>;
 
 struct Context {
-  const std::function<void(Vec)>& multiply;
   double radius;
   bool below = false;  // an eigenvalue below the radius was met, so that all above it have converged
-  core::Gate gate;
 };
-
-PetscErrorCode shell_multiply(Mat m, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  auto& c = *static_cast<Context*>(raw);
-  return c.gate.run([&] {
-    check(VecCopy(v, y));
-    c.multiply(y);
-  });
-}
 
 // They are looked at by falling modulus. Above the radius an eigenpair wants its tolerance relative to its eigenvalue;
 // of the first one below nothing is asked but that it stays there with its residual: the moduli of contracting films
@@ -61,10 +48,12 @@ DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec
   PetscInt local = 0, n = 0;
   check(VecGetLocalSize(start, &local));
   check(VecGetSize(start, &n));
-  Context context{multiply, options.radius, false, core::Gate(comm)};
-  core::Matrix shell;
-  check(MatCreateShell(comm, local, local, n, n, &context, shell.put()));
-  check(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(shell_multiply)));
+  Context context{options.radius};
+  core::Gate gate(comm);
+  const core::Matrix shell = core::make_shell(comm, local, gate, [&](Vec v, Vec y) {
+    check(VecCopy(v, y));
+    multiply(y);
+  });
 
   DominantSubspace out;
   const auto most = std::min<PetscInt>(n, options.most);
@@ -84,7 +73,7 @@ DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec
     context.below = false;
     check(EPSSetInitialSpace(eps.get(), 1, &start));
     core::set_from_options(eps.get());
-    context.gate.rethrow(EPSSolve(eps.get()));
+    gate.rethrow(EPSSolve(eps.get()));
     PetscInt converged = 0;
     check(EPSGetConverged(eps.get(), &converged));
     if (converged < wanted && !context.below && options.persistent && wanted < most) continue;

@@ -28,20 +28,18 @@ SpreadStep::SpreadStep(MPI_Comm comm, PetscInt local, const Scheme& scheme)
   const auto size = static_cast<PetscInt>(m * local);
   rhs_ = core::make_vector(comm, size, PETSC_DETERMINE);
   answer_ = core::duplicate(rhs_.get());
-  check(MatCreateShell(comm, size, size, PETSC_DETERMINE, PETSC_DETERMINE, this, shell_.put()));
-  check(MatShellSetOperation(shell_.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
-  check(KSPCreate(comm, solver_.put()));
-  check(KSPSetOptionsPrefix(solver_.get(), "interval_"));
-  check(KSPSetOperators(solver_.get(), shell_.get(), shell_.get()));
-  check(KSPSetType(solver_.get(), KSPFGMRES));
-  check(KSPSetPCSide(solver_.get(), PC_RIGHT));
-  PC pc = nullptr;
-  check(KSPGetPC(solver_.get(), &pc));
-  check(PCSetType(pc, PCSHELL));
-  check(PCShellSetContext(pc, this));
-  check(PCShellSetApply(pc, precondition));
-  check(KSPSetTolerances(solver_.get(), PETSC_DEFAULT, 1e-300, PETSC_DEFAULT, 200));
-  check(KSPSetFromOptions(solver_.get()));
+  shell_ = core::make_shell(comm, size, gate_, [this](Vec v, Vec y) {
+    const core::ReadArray x(v);
+    const core::WriteArray out(y);
+    interval_->multiply(nullptr, x.data(), out.data());
+    if (held_) hold(*interval_->blocks_[0]->layout(), out.data(), scheme_->degree);
+  });
+  solver_ = core::make_krylov(shell_.get(), gate_, {.prefix = "interval_", .type = KSPFGMRES, .most = 200},
+                              [this](Vec r, Vec y) {
+                                const core::ReadArray in(r);
+                                const core::WriteArray out(y);
+                                interval_->precondition(in.data(), out.data());
+                              });
 }
 
 void SpreadStep::hold(const PortLayout& layout, double* v, Index k) {
@@ -52,29 +50,6 @@ void SpreadStep::hold(const PortLayout& layout, double* v, Index k) {
     hub.setZero();
     layout.give(parts.data(), hub.data(), column);
   }
-}
-
-PetscErrorCode SpreadStep::multiply(Mat m, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  auto& self = *static_cast<SpreadStep*>(raw);
-  return self.gate_.run([&] {
-    const core::ReadArray x(v);
-    const core::WriteArray out(y);
-    self.interval_->multiply(nullptr, x.data(), out.data());
-    if (self.held_) hold(*self.interval_->blocks_[0]->layout(), out.data(), self.scheme_->degree);
-  });
-}
-
-PetscErrorCode SpreadStep::precondition(PC pc, Vec r, Vec y) {
-  void* raw = nullptr;
-  PetscCall(PCShellGetContext(pc, &raw));
-  auto& self = *static_cast<SpreadStep*>(raw);
-  return self.gate_.run([&] {
-    const core::ReadArray in(r);
-    const core::WriteArray out(y);
-    self.interval_->precondition(in.data(), out.data());
-  });
 }
 
 // With B = D + own J, J X = (B X - D X)/own.
@@ -140,9 +115,7 @@ void SpreadInterval::solve(MatrixXd& x, double tolerance, bool held) const {
     } catch (const core::NotConverged&) {
       fail();
     }
-    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-    check(KSPGetConvergedReason(s.solver_.get(), &reason));
-    if (reason < 0) fail();
+    if (core::reason_of(s.solver_.get()) < 0) fail();
     const core::ReadArray a(s.answer_.get());
     x.col(k) = Map<const VectorXd>(a.data(), x.rows());
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solve/newton/port_elimination.hpp"
-#include "whirl/core/gate.hpp"
+#include "whirl/core/shell.hpp"
 #include "whirl/solve/cycle/scheme.hpp"
 
 namespace whirl::solve {
@@ -26,8 +26,6 @@ public:
 
 private:
   friend class SpreadInterval;
-  static PetscErrorCode multiply(Mat m, Vec v, Vec y);
-  static PetscErrorCode precondition(PC pc, Vec r, Vec y);
   MPI_Comm comm_;
   const Scheme* scheme_;
   Eigen::MatrixXd triangle_;
