@@ -81,7 +81,6 @@ public:
   [[nodiscard]] Eigen::VectorXcd multiplier_vector(std::complex<double> mu) override;
   [[nodiscard]] MPI_Comm rows() const override { return system_.comm(); }
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& v) override;
-  [[nodiscard]] std::optional<Eigen::MatrixXd> matrix_of_period() override { return {}; }
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { v = basis_, image = image_; }
   [[nodiscard]] Path forward(const Eigen::VectorXd& v) const override;
   [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const override;
