@@ -29,13 +29,13 @@ double CycleProblem::largest(const Path& path, MPI_Comm comm) {
 
 Path CycleProblem::path_of(Vec v) const {
   const core::ReadArray a(v);
-  return {previous_end(a.data()), Map<const MatrixXd>(a.data(), n_, count_ * scheme_.degree), border_of(v)};
+  return {previous_end(a.data()), Map<const MatrixXd>(a.data(), local_, count_ * scheme_.degree), border_of(v)};
 }
 
 void CycleProblem::interval_transposed(Index i, const double* own, const VectorXd& start, double period,
                                        const MatrixXd& y, MatrixXd& to_own, MatrixXd& to_start, MatrixXd& to_border) {
   const double length = interval_length(i) * period;
-  VectorXd value(n_), slope(n_), d_parameter(n_), rate(n_), by_value, by_slope;
+  VectorXd value(local_), slope(local_), d_parameter(local_), rate(local_), by_value, by_slope;
   MatrixXd jx, jxdot;
   problem::PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
@@ -49,9 +49,9 @@ void CycleProblem::interval_transposed(Index i, const double* own, const VectorX
       point_.linearise(angle, value, slope, jx, jxdot, &d_parameter);
       rate.noalias() = jxdot * slope;
     }
-    to_border += border_columns(d_parameter, rate, period).transpose() * y.middleRows(j * n_, n_);
+    to_border += border_columns(d_parameter, rate, period).transpose() * y.middleRows(j * local_, local_);
     for (Index k = 0; k < y.cols(); ++k) {
-      const auto part = y.col(k).segment(j * n_, n_);
+      const auto part = y.col(k).segment(j * local_, local_);
       if (structure_) {
         point_.times_transposed(at, part, by_value, by_slope);
       } else {
@@ -61,15 +61,15 @@ void CycleProblem::interval_transposed(Index i, const double* own, const VectorX
       by_slope /= length;
       to_start.col(k) += scheme_.value(j, 0) * by_value + scheme_.slope(j, 0) * by_slope;
       for (Index l = 1; l <= scheme_.degree; ++l)
-        to_own.col(k).segment((l - 1) * n_, n_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
+        to_own.col(k).segment((l - 1) * local_, local_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
     }
   }
 }
 
 MatrixXd CycleProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
                                         const MatrixXd& d_own, const MatrixXd& d_start) {
-  VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), unused(n_);
-  MatrixXd jx, jxdot, out(scheme_.degree * n_, d_own.cols());
+  VectorXd value(local_), slope(local_), d_value(local_), d_slope(local_), unused(local_);
+  MatrixXd jx, jxdot, out(scheme_.degree * local_, d_own.cols());
   problem::PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
     interpolate(i, j, own, start, period, value, slope);
@@ -81,9 +81,9 @@ MatrixXd CycleProblem::interval_tangent(Index i, const double* own, const Vector
     for (Index k = 0; k < out.cols(); ++k) {
       interpolate(i, j, d_own.col(k).data(), d_start.col(k), period, d_value, d_slope);
       if (structure_)
-        point_.times(at, d_value, d_slope, out.col(k).segment(j * n_, n_));
+        point_.times(at, d_value, d_slope, out.col(k).segment(j * local_, local_));
       else
-        out.col(k).segment(j * n_, n_) = jx * d_value + jxdot * d_slope;
+        out.col(k).segment(j * local_, local_) = jx * d_value + jxdot * d_slope;
     }
   }
   return out;
@@ -97,26 +97,23 @@ void CycleProblem::displaced(Vec u, double step, const Path& along,
       at.border + (along.border.size() > 0 ? VectorXd(step * along.border) : VectorXd::Zero(borders_));
   const MatrixXd nodes = at.nodes + step * along.nodes;
   const VectorXd before = at.start + step * along.start;
-  core::agree(comm_, [&] {
-    set_parameter(border);
-    const double period = period_of(border);
-    if (!(period > 0)) throw core::DomainError("the period is not positive");
-    point_.refresh();
+  core::agree(comm(), [&] {
+    const double period = begin_point(border);
     for (Index i = 0; i < count_; ++i) {
-      const double* own = nodes.data() + i * scheme_.degree * n_;
-      work(i, own, i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_)), period);
+      const double* own = nodes.data() + i * scheme_.degree * local_;
+      work(i, own, i == 0 ? before : VectorXd(Map<const VectorXd>(own - local_, local_)), period);
     }
   });
 }
 
 std::vector<core::Vector> CycleProblem::gradients(Vec u, const Path& v, const std::vector<MatrixXd>& weights) {
-  const Index m = scheme_.degree, block = m * n_, many = static_cast<Index>(weights.size());
-  const double h = difference_step(largest(v, comm_));
-  MatrixXd own_sum = MatrixXd::Zero(count_ * block, many), before_sum = MatrixXd::Zero(n_, many),
+  const Index m = scheme_.degree, block = m * local_, many = static_cast<Index>(weights.size());
+  const double h = difference_step(largest(v, comm()));
+  MatrixXd own_sum = MatrixXd::Zero(count_ * block, many), before_sum = MatrixXd::Zero(local_, many),
            border_sum = MatrixXd::Zero(borders_, many), y(block, many);
   for (const double sign : {1.0, -1.0})
     displaced(u, sign * h, v, [&](Index i, const double* own, const VectorXd& start, double period) {
-      MatrixXd to_own = MatrixXd::Zero(block, many), to_start = MatrixXd::Zero(n_, many),
+      MatrixXd to_own = MatrixXd::Zero(block, many), to_start = MatrixXd::Zero(local_, many),
                to_border = MatrixXd::Zero(borders_, many);
       for (Index k = 0; k < many; ++k) y.col(k) = weights[static_cast<std::size_t>(k)].col(i);
       interval_transposed(i, own, start, period, y, to_own, to_start, to_border);
@@ -125,23 +122,22 @@ std::vector<core::Vector> CycleProblem::gradients(Vec u, const Path& v, const st
       if (i == 0)
         before_sum += factor * to_start;
       else
-        own_sum.middleRows(i * block - n_, n_) += factor * to_start;
+        own_sum.middleRows(i * block - local_, local_) += factor * to_start;
       border_sum += factor * to_border;
     });
-  set_parameter(border_of(u));
-  point_.refresh();
-  const int next = (rank_ + 1) % size_, previous = (rank_ + size_ - 1) % size_;
+  (void)begin_point(border_of(u));
+  const int next = (groups_.index() + 1) % groups_.count(), previous = (groups_.index() + groups_.count() - 1) % groups_.count();
   std::vector<core::Vector> out;
   for (Index k = 0; k < many; ++k) {
-    VectorXd received(n_);
-    MPI_Sendrecv(before_sum.col(k).data(), static_cast<int>(n_), MPI_DOUBLE, previous, 0, received.data(),
-                 static_cast<int>(n_), MPI_DOUBLE, next, 0, comm_, MPI_STATUS_IGNORE);
-    own_sum.col(k).tail(n_) += received;
-    MPI_Allreduce(MPI_IN_PLACE, border_sum.col(k).data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm_);
+    VectorXd received(local_);
+    MPI_Sendrecv(before_sum.col(k).data(), static_cast<int>(local_), MPI_DOUBLE, previous, 0, received.data(),
+                 static_cast<int>(local_), MPI_DOUBLE, next, 0, comm(), MPI_STATUS_IGNORE);
+    own_sum.col(k).tail(local_) += received;
+    MPI_Allreduce(MPI_IN_PLACE, border_sum.col(k).data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm());
     core::Vector g = make_unknown();
     const core::WriteArray a(g.get());
     Map<VectorXd>(a.data(), own_sum.rows()) = own_sum.col(k);
-    if (rank_ == size_ - 1) Map<VectorXd>(a.data() + own_sum.rows(), borders_) = border_sum.col(k);
+    if (last_) Map<VectorXd>(a.data() + own_sum.rows(), borders_) = border_sum.col(k);
     out.push_back(std::move(g));
   }
   return out;
@@ -149,57 +145,56 @@ std::vector<core::Vector> CycleProblem::gradients(Vec u, const Path& v, const st
 
 void CycleProblem::curvature(Vec u, Vec v, Vec w, Vec out) {
   const core::ReadArray a(w);
-  const Index block = scheme_.degree * n_;
+  const Index block = scheme_.degree * local_;
   std::vector<MatrixXd> weights{Map<const MatrixXd>(a.data(), block, count_)};
   core::check(VecCopy(gradients(u, path_of(v), weights).front().get(), out));
 }
 
 std::vector<MatrixXd> CycleProblem::tangents(Vec u, double step, const Path& a, const std::vector<const Path*>& b) {
-  const Index block = scheme_.degree * n_, many = static_cast<Index>(b.size());
+  const Index block = scheme_.degree * local_, many = static_cast<Index>(b.size());
   std::vector<MatrixXd> y(b.size(), MatrixXd(block, count_));
-  MatrixXd d_own(block, many), d_start(n_, many);
+  MatrixXd d_own(block, many), d_start(local_, many);
   displaced(u, step, a, [&](Index i, const double* own, const VectorXd& start, double period) {
     for (Index k = 0; k < many; ++k) {
       const Path& path = *b[static_cast<std::size_t>(k)];
       const double* nodes = path.nodes.data() + i * block;
       d_own.col(k) = Map<const VectorXd>(nodes, block);
-      d_start.col(k) = i == 0 ? path.start : VectorXd(Map<const VectorXd>(nodes - n_, n_));
+      d_start.col(k) = i == 0 ? path.start : VectorXd(Map<const VectorXd>(nodes - local_, local_));
     }
     const MatrixXd out = interval_tangent(i, own, start, period, d_own, d_start);
     for (Index k = 0; k < many; ++k) y[static_cast<std::size_t>(k)].col(i) = out.col(k);
   });
-  set_parameter(border_of(u));
-  point_.refresh();
+  (void)begin_point(border_of(u));
   return y;
 }
 
 Path CycleProblem::forward(const VectorXd& v) const {
-  Path path{composition_->entering(v), MatrixXd(n_, count_ * scheme_.degree), {}};
+  Path path{composition_->entering(v), MatrixXd(local_, count_ * scheme_.degree), {}};
   VectorXd added = VectorXd::Zero(borders_);
   (void)run_.drive(nullptr, path.start, nullptr, path.nodes.data(), added);
   return path;
 }
 
 Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
-  // Ranks follow one another: what leaves one enters the next.
-  Path path{VectorXd::Zero(n_), MatrixXd(n_, count_ * scheme_.degree), {}};
-  const int n = static_cast<int>(n_);
-  if (rank_ > 0) MPI_Recv(path.start.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_, MPI_STATUS_IGNORE);
+  Path path{{}, MatrixXd(local_, count_ * scheme_.degree), {}};
   const MatrixXd rhs = -y;
+  MatrixXd state = MatrixXd::Zero(local_, 1);
   VectorXd added = VectorXd::Zero(borders_);
-  end = run_.drive(rhs.data(), path.start, nullptr, path.nodes.data(), added);
-  if (rank_ < size_ - 1) MPI_Send(end.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_);
-  MPI_Bcast(end.data(), n, MPI_DOUBLE, size_ - 1, comm_);
+  groups_.in_turn(state, [&] {
+    path.start = state;
+    state = run_.drive(rhs.data(), path.start, nullptr, path.nodes.data(), added);
+  });
+  end = state;
   return path;
 }
 
 MatrixXd CycleProblem::backward(const VectorXd& w) const {
   VectorXd lambda = w, seen = VectorXd::Zero(borders_);
-  const int n = static_cast<int>(n_);
-  if (rank_ < size_ - 1) MPI_Recv(lambda.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_, MPI_STATUS_IGNORE);
-  MatrixXd weights(scheme_.degree * n_, count_);
+  const int n = static_cast<int>(local_);
+  if (groups_.index() < groups_.count() - 1) MPI_Recv(lambda.data(), n, MPI_DOUBLE, groups_.index() + 1, 0, comm(), MPI_STATUS_IGNORE);
+  MatrixXd weights(scheme_.degree * local_, count_);
   lambda = run_.drive_back(nullptr, lambda, VectorXd::Zero(borders_), weights.data(), seen);
-  if (rank_ > 0) MPI_Send(lambda.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_);
+  if (groups_.index() > 0) MPI_Send(lambda.data(), n, MPI_DOUBLE, groups_.index() - 1, 0, comm());
   return weights;
 }
 
@@ -208,7 +203,7 @@ void CycleProblem::solve_transposed(Vec rhs, Vec x) {
   const core::ReadArray ra(rhs);
   const core::WriteArray xa(x);
   composition_->solve_transposed(ra.data(), border, xa.data());
-  if (rank_ == size_ - 1) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
+  if (last_) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
 }
 
 }  // namespace whirl::solve

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "solve/cycle/cycle_matrix.hpp"
 #include "solve/cycle/film_march.hpp"
@@ -22,8 +21,6 @@ using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double two_pi = 2 * std::numbers::pi;
 
 using Joining = CycleOptions::Joining;
 
@@ -58,22 +55,24 @@ CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Blo
   return 2 * structure->n_forces() < structure->size() ? Way::low_rank : Way::dense;
 }
 
-CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh)
-    : comm_(time),
-      rank_(core::rank_of(time)),
-      size_(core::size_of(time)),
-      system_(local),
+CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options,
+                           std::vector<double> mesh)
+    : OrbitProblem(local, TimeGroups(time, time),
+                   {options.turns, options.autonomous, options.parameter_scale, options.state_weight},
+                   make_scheme(options.degree, options.points), mesh),
       structure_(options.use_structure ? local.structure() : nullptr),
       options_(options),
       way_(way_of(options, structure_, mesh.size() - 1)),
       point_(local, structure_, way_ == Way::sparse),
-      scheme_(make_scheme(options.degree, options.points)),
-      n_(local.size()),
-      borders_(options.autonomous ? 2 : 1) {
-  run_.comm = time;
-  run_.n = n_;
-  run_.borders = borders_;
-  run_.multipliers = options.multipliers;
+      run_{.comm = time,
+           .n = local_,
+           .borders = borders_,
+           .intervals = {},
+           .columns = {},
+           .rows = rows_,
+           .corner = corner_,
+           .thin = {},
+           .multipliers = options.multipliers} {
   const auto sweeps_are_cheaper = [&] {
     return cost::cheapest(counts(options, *structure_, mesh.size() - 1), true, false) == core::plan::CycleWay::sweeps;
   };
@@ -88,66 +87,29 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
   composition_ = way_ == Way::sparse ? make_mode_composition()
                  : sweeps            ? make_sweep_composition()
                                      : make_dense_composition();
-  layout(std::move(mesh));
+  forget_mesh();
 }
 
 CycleProblem::~CycleProblem() = default;
 
-void CycleProblem::layout(std::vector<double> mesh) {
-  mesh_ = std::move(mesh);
-  const Index total = static_cast<Index>(mesh_.size()) - 1;
-  if (total < size_) throw core::InputError("fewer collocation intervals than ranks");
-  first_ = total * rank_ / size_;
-  const Index count = total * (rank_ + 1) / size_ - first_;
-  int same = count == count_;
-  MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_LAND, comm_);
-  if (!same) matrix_.reset();
+void CycleProblem::forget_mesh() {
+  matrix_.reset();
   linearised_ = false;
-  count_ = count;
   kept_.resize(static_cast<std::size_t>(structure_ ? count_ * scheme_.degree : 0));
   kept_valid_ = false;
   run_.intervals.clear();
-  weights_ = make_unknown();
-  core::WriteArray w(weights_.get());
-  const Index m = scheme_.degree;
-  for (Index i = 0; i < count_; ++i)
-    for (Index l = 0; l < m; ++l)
-      for (Index k = 0; k < n_; ++k)
-        w[static_cast<PetscInt>((i * m + l) * n_ + k)] =
-            options_.state_weight * interval_length(i) * scheme_.node_weight(l) / static_cast<double>(n_);
-  if (rank_ == size_ - 1) w[w.size() - 1] = 1;
 }
 
-core::Vector CycleProblem::make_unknown() const {
-  const Index local = count_ * scheme_.degree * n_ + (rank_ == size_ - 1 ? borders_ : 0);
-  return core::make_vector(comm_, static_cast<PetscInt>(local), PETSC_DETERMINE);
-}
-
-VectorXd CycleProblem::border_of(Vec u) const {
-  VectorXd border(borders_);
-  if (rank_ == size_ - 1) {
-    const core::ReadArray a(u);
-    for (Index k = 0; k < borders_; ++k) border(k) = a[static_cast<PetscInt>(a.size() - borders_ + k)];
-  }
-  MPI_Bcast(border.data(), static_cast<int>(borders_), MPI_DOUBLE, size_ - 1, comm_);
-  return border;
-}
-
-void CycleProblem::set_parameter(const VectorXd& border) {
+double CycleProblem::begin_point(const VectorXd& border) {
   system_.set_parameter(border(borders_ - 1) * options_.parameter_scale);
+  const double period = period_of(border);
+  if (!(period > 0)) throw core::DomainError("the period is not positive");
+  point_.refresh();
+  return period;
 }
 
-double CycleProblem::period_of(const VectorXd& border) const {
-  if (options_.autonomous) return border(0) * period_scale_;
-  return two_pi * options_.turns / system_.speed();
-}
-
-VectorXd CycleProblem::previous_end(const double* local) const {
-  VectorXd send = Map<const VectorXd>(local + (count_ * scheme_.degree - 1) * n_, n_), receive(n_);
-  const int next = (rank_ + 1) % size_, previous = (rank_ + size_ - 1) % size_;
-  MPI_Sendrecv(send.data(), static_cast<int>(n_), MPI_DOUBLE, next, 0, receive.data(), static_cast<int>(n_), MPI_DOUBLE,
-               previous, 0, comm_, MPI_STATUS_IGNORE);
-  return receive;
+VectorXd CycleProblem::previous_end(const double* own) const {
+  return groups_.from_before(Map<const VectorXd>(own + (count_ * scheme_.degree - 1) * local_, local_));
 }
 
 void CycleProblem::residual(Vec u, Vec r) {
@@ -157,34 +119,16 @@ void CycleProblem::residual(Vec u, Vec r) {
   core::WriteArray ra(r);
   const Index m = scheme_.degree;
   kept_valid_ = false;
-  core::agree(comm_, [&] {
-    set_parameter(border);
-    const double period = period_of(border);
-    if (!(period > 0)) throw core::DomainError("the period is not positive");
-    point_.refresh();
+  core::agree(comm(), [&] {
+    const double period = begin_point(border);
     for (Index i = 0; i < count_; ++i) {
-      const double* own = ua.data() + i * m * n_;
-      const double* start = i == 0 ? before.data() : own - n_;
-      interval_residual(i, own, Map<const VectorXd>(start, n_), period, ra.data() + i * m * n_);
+      const double* own = ua.data() + i * m * local_;
+      const double* start = i == 0 ? before.data() : own - local_;
+      interval_residual(i, own, Map<const VectorXd>(start, local_), period, ra.data() + i * m * local_);
     }
   });
   keep(ua, before, border);
-  if (options_.autonomous) {
-    double phase = 0;
-    if (count_ > 0) phase = (Map<const MatrixXd>(ua.data(), n_, count_ * m).array() * phase_row_.array()).sum();
-    MPI_Allreduce(MPI_IN_PLACE, &phase, 1, MPI_DOUBLE, MPI_SUM, comm_);
-    if (rank_ == size_ - 1) ra[ra.size() - 2] = phase - phase_offset_;
-  }
-}
-
-double CycleProblem::interval_length(Index i) const {
-  const auto k = static_cast<std::size_t>(first_ + i);
-  return mesh_[k + 1] - mesh_[k];
-}
-
-double CycleProblem::angle_at(Index i, double t) const {
-  const auto k = static_cast<std::size_t>(first_ + i);
-  return options_.autonomous ? 0.0 : two_pi * options_.turns * (mesh_[k] + interval_length(i) * t);
+  put_phase(Map<const MatrixXd>(ua.data(), local_, count_ * m), ra);
 }
 
 // State and rate at point j of interval i.
@@ -193,18 +137,18 @@ void CycleProblem::interpolate(Index i, Index j, const double* own, const Vector
   value = scheme_.value(j, 0) * start;
   slope = scheme_.slope(j, 0) * start;
   for (Index l = 1; l <= scheme_.degree; ++l) {
-    const Map<const VectorXd> node(own + (l - 1) * n_, n_);
+    const Map<const VectorXd> node(own + (l - 1) * local_, local_);
     value += scheme_.value(j, l) * node;
     slope += scheme_.slope(j, l) * node;
   }
-  slope /= interval_length(i) * period;
+  slope /= length(i) * period;
 }
 
 void CycleProblem::interval_residual(Index i, const double* own, const VectorXd& start, double period, double* out) {
   const Index m = scheme_.degree;
   for (Index j = 0; j < m; ++j) {
     interpolate(i, j, own, start, period, value_, slope_);
-    Map<VectorXd> row(out + j * n_, n_);
+    Map<VectorXd> row(out + j * local_, local_);
     if (structure_)
       point_.residual(angle_at(i, scheme_.c(j)), value_, slope_, row, kept_[static_cast<std::size_t>(i * m + j)]);
     else
@@ -213,7 +157,7 @@ void CycleProblem::interval_residual(Index i, const double* own, const VectorXd&
 }
 
 MatrixXd CycleProblem::border_columns(const VectorXd& d_parameter, const VectorXd& rate, double period) const {
-  MatrixXd columns(n_, borders_);
+  MatrixXd columns(local_, borders_);
   columns.rightCols(1) = d_parameter;
   // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
   if (!options_.autonomous && system_.parameter_is_speed()) columns.rightCols(1) += rate / system_.speed();
@@ -225,11 +169,11 @@ MatrixXd CycleProblem::border_columns(const VectorXd& d_parameter, const VectorX
 std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double* own, const VectorXd& start,
                                                            double period, MatrixXd& columns) {
   const Index m = scheme_.degree;
-  const double h = interval_length(i);
-  columns.resize(m * n_, borders_);
+  const double h = length(i);
+  columns.resize(m * local_, borders_);
   std::vector<MatrixXd> jx(static_cast<std::size_t>(m)), jxdot(jx);
   std::vector<const problem::PointState*> points;
-  VectorXd d_parameter(n_), rate(n_);
+  VectorXd d_parameter(local_), rate(local_);
   for (Index j = 0; j < m; ++j) {
     const auto jj = static_cast<std::size_t>(j);
     const double angle = angle_at(i, scheme_.c(j));
@@ -245,7 +189,7 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
       point_.linearise(angle, value_, slope_, jx[jj], jxdot[jj], &d_parameter);
       rate.noalias() = jxdot[jj] * slope_;
     }
-    columns.middleRows(j * n_, n_) = border_columns(d_parameter, rate, period);
+    columns.middleRows(j * local_, local_) = border_columns(d_parameter, rate, period);
   }
   if (way_ == Way::dense) return make_dense_interval(scheme_, h * period, std::move(jx), std::move(jxdot));
   const double rounded = std::round(h * 1e12) / 1e12;
@@ -265,9 +209,9 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
 
 void CycleProblem::linearise(Vec u, Vec row) {
   const VectorXd border = border_of(u);
-  const core::ReadArray ua(u), wa(row);
+  const core::ReadArray ua(u);
   const VectorXd before = previous_end(ua.data());
-  const Index m = scheme_.degree, size = m * n_;
+  const Index m = scheme_.degree, size = m * local_;
   const auto count = static_cast<std::size_t>(count_);
   const bool known = kept_valid_ && same_as_kept(ua, before, border);
   kept_valid_ = known;
@@ -278,15 +222,12 @@ void CycleProblem::linearise(Vec u, Vec row) {
   sparse_parts_.clear();
   run_.thin.reset();
   run_.columns.resize(count);
-  core::agree(comm_, [&] {
-    set_parameter(border);
-    const double period = period_of(border);
-    if (!(period > 0)) throw core::DomainError("the period is not positive");
-    point_.refresh();
+  core::agree(comm(), [&] {
+    const double period = begin_point(border);
     if (way_ == Way::sparse) thin_ = point_.thin_blocks();
     for (Index i = 0; i < count_; ++i) {
       const double* own = ua.data() + i * size;
-      const VectorXd start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_));
+      const VectorXd start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - local_, local_));
       run_.intervals[static_cast<std::size_t>(i)] =
           linearise_interval(i, own, start, period, run_.columns[static_cast<std::size_t>(i)]);
     }
@@ -297,15 +238,7 @@ void CycleProblem::linearise(Vec u, Vec row) {
   // The same solution is often linearised again with another row.
   if (!known) keep(ua, before, border);
 
-  run_.rows.resize(count);
-  for (Index i = 0; i < count_; ++i) {
-    auto& rows = run_.rows[static_cast<std::size_t>(i)];
-    rows.resize(borders_, size);
-    rows.row(borders_ - 1) = Map<const VectorXd>(wa.data() + i * size, size).transpose();
-    if (options_.autonomous) rows.row(0) = Map<const VectorXd>(phase_row_.data() + i * size, size).transpose();
-  }
-  run_.corner = MatrixXd::Zero(borders_, borders_);
-  run_.corner.row(borders_ - 1) = border_of(row).transpose();
+  take_rows(row);
   composition_->compose(run_);
   linearised_ = true;
   if (matrix_) matrix_->fill(run_);
@@ -317,8 +250,32 @@ Mat CycleProblem::matrix() {
   return matrix_->get();
 }
 
+VectorXd CycleProblem::reference_rate(const Cycle& reference, Index g, Index l) {
+  const Index m = scheme_.degree;
+  const VectorXd w = lagrange_slope(scheme_, scheme_.node(l)) / length(g - first_);
+  VectorXd rate = w(0) * reference.x.col(g == 0 ? reference.x.cols() - 1 : g * m - 1);
+  for (Index q = 1; q <= m; ++q) rate += w(q) * reference.x.col(g * m + q - 1);
+  return rate;
+}
+
+MatrixXd CycleProblem::reference_rates(const Cycle& reference) {
+  const Index m = scheme_.degree;
+  MatrixXd rates(local_, count_ * m);
+  core::agree(comm(), [&] {  // a film may refuse a cycle that comes from another mesh
+    for (Index k = 0; k < count_ * m; ++k)
+      rates.col(k) = reference_rate(reference, first_ + k / m, k % m + 1).cwiseQuotient(state_scale());
+  });
+  return rates;
+}
+
+bool CycleProblem::adapt(core::Vector& u, core::Vector& tangent) {
+  // Modes in time want intervals of like lengths: whole shafts keep their mesh, and bars tell what it does.
+  if (way_ == Way::sparse) return false;
+  return adapt_to(options_.mesh_tolerance, options_.base_intervals, options_.max_intervals, u, tangent);
+}
+
 std::vector<problem::Field> CycleProblem::fields() const {
-  return {{"orbit", 0, static_cast<PetscInt>(count_ * scheme_.degree * n_)}};
+  return {{"orbit", 0, static_cast<PetscInt>(count_ * scheme_.degree * local_)}};
 }
 
 void CycleProblem::keep(const core::ReadArray& u, const VectorXd& before, const VectorXd& border) {
@@ -333,33 +290,12 @@ bool CycleProblem::same_as_kept(const core::ReadArray& u, const VectorXd& before
          kept_u_ == Map<const VectorXd>(u.data(), u.size());
 }
 
-void CycleProblem::multiply(Vec v, Vec y) {
-  const VectorXd border = border_of(v);
-  const core::ReadArray va(v);
-  const VectorXd before = previous_end(va.data());
-  const Index size = scheme_.degree * n_;
-  core::WriteArray ya(y);
-  VectorXd added = VectorXd::Zero(borders_), x, start = before;
-  for (Index i = 0; i < count_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    x = Map<const VectorXd>(va.data() + i * size, size);
-    Map<VectorXd> out(ya.data() + i * size, size);
-    out = run_.intervals[k]->multiply(start, x);
-    out.noalias() += run_.columns[k] * border;
-    added.noalias() += run_.rows[k] * x;
-    start = x.tail(n_);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, added.data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm_);
-  added.noalias() += run_.corner * border;
-  if (rank_ == size_ - 1) Map<VectorXd>(ya.data() + ya.size() - borders_, borders_) = added;
-}
-
 void CycleProblem::solve(Vec rhs, Vec x) {
   VectorXd border = border_of(rhs);
   const core::ReadArray ra(rhs);
   core::WriteArray xa(x);
   composition_->solve(ra.data(), border, xa.data());
-  if (rank_ == size_ - 1) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
+  if (last_) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
 }
 
 std::vector<std::complex<double>> CycleProblem::multipliers() {
@@ -376,9 +312,9 @@ MatrixXd CycleProblem::critical_motion(double mu) {
 
 MatrixXd CycleProblem::propagate(const VectorXd& v) const {
   const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
-  MatrixXd whole = MatrixXd::Zero(n_, total * m);
+  MatrixXd whole = MatrixXd::Zero(local_, total * m);
   whole.middleCols(first_ * m, count_ * m) = forward(v).nodes;
-  MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm());
   return whole;
 }
 

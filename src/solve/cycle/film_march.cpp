@@ -93,27 +93,25 @@ bool CycleProblem::settle(Vec u) {
   MatrixXd nodes;
   {
     const core::ReadArray ua(u);
-    nodes = Map<const MatrixXd>(ua.data(), n_, count_ * m);
+    nodes = Map<const MatrixXd>(ua.data(), local_, count_ * m);
   }
   try {
-    core::agree(comm_, [&] {
-      set_parameter(border);
-      if (!(period_of(border) > 0)) throw core::DomainError("the period is not positive");
-      point_.refresh();
+    core::agree(comm(), [&] {
+      (void)begin_point(border);
     });
     VectorXd entered;
     double moved = 0;
-    for (int lap = 0; lap < most_laps * size_; ++lap) {
+    for (int lap = 0; lap < most_laps * groups_.count(); ++lap) {
       const VectorXd before = previous_end(nodes.data());
       moved = lap == 0 ? 1 : (before - entered).lpNorm<Eigen::Infinity>();
       entered = before;
-      MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_MAX, comm_);
+      MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_MAX, comm());
       if (moved <= enough) break;
-      core::agree(comm_, [&] {
+      core::agree(comm(), [&] {
         for (Index i = 0; i < count_; ++i) {
           const VectorXd start = i == 0 ? before : VectorXd(nodes.col(i * m - 1));
           const double change =
-              march_->interval(interval_length(i) * period_of(border), start, nodes.col(i * m).data());
+              march_->interval(length(i) * period_of(border), start, nodes.col(i * m).data());
           if (lap > 0 && change <= enough) break;  // all behind it stays
         }
       });
@@ -125,7 +123,7 @@ bool CycleProblem::settle(Vec u) {
     return false;
   }
   const core::WriteArray ua(u);
-  Map<MatrixXd>(ua.data(), n_, count_ * m) = nodes;
+  Map<MatrixXd>(ua.data(), local_, count_ * m) = nodes;
   return true;
 }
 

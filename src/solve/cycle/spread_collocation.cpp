@@ -62,6 +62,10 @@ std::vector<problem::Field> SpreadCollocation::fields() const {
 
 void SpreadCollocation::refresh() {}
 
+void SpreadCollocation::forget_mesh() {
+  intervals_.clear();
+}
+
 void SpreadCollocation::interpolate(const MatrixXd& x, Index i, Index j, double period) {
   const Index m = scheme().degree;
   put(x.col(i * m + 1 + j), value_.get());
@@ -242,20 +246,7 @@ VectorXd SpreadCollocation::reference_rate(const MatrixXd& x, double /*period*/,
 }
 
 bool SpreadCollocation::adapt(core::Vector& u, core::Vector& tangent) {
-  if (options_.mesh_tolerance <= 0) return false;
-  const Cycle cycle = gather(u.get()), direction = gather(tangent.get());
-  double longest = 0;
-  for (std::size_t i = 0; i + 1 < mesh().size(); ++i) longest = std::max(longest, mesh()[i + 1] - mesh()[i]);
-  const int base = options_.base_intervals > 0 ? options_.base_intervals : static_cast<int>(std::lround(1 / longest));
-  std::vector<double> better = adapted_mesh(scheme(), cycle, state_scale(), options_.mesh_tolerance, base,
-                                            options_.max_intervals, system().comm());
-  if (better == mesh()) return false;
-  intervals_.clear();
-  set_mesh(std::move(better));
-  u = scatter(cycle);
-  tangent = scatter(direction);
-  if (options().autonomous) set_phase_reference(cycle);
-  return true;
+  return adapt_to(options_.mesh_tolerance, options_.base_intervals, options_.max_intervals, u, tangent);
 }
 
 }  // namespace whirl::solve

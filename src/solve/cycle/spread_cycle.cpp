@@ -1,11 +1,10 @@
 #include "whirl/solve/cycle/spread_cycle.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "solve/newton/local_part.hpp"
 #include "whirl/core/agree.hpp"
-#include "whirl/core/count.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/core/index.hpp"
 
 namespace whirl::solve {
@@ -37,73 +36,18 @@ private:
 
 SpreadCycle::SpreadCycle(problem::System& system, const NewtonPicardOptions& options, Scheme scheme,
                          std::vector<double> mesh, bool inexact, const TimeGroups& groups)
-    : system_(system),
-      groups_(groups),
+    : OrbitProblem(system, groups, {options.turns, options.autonomous, options.parameter_scale, options.state_weight},
+                   std::move(scheme), std::move(mesh)),
       options_(options),
       radius_(options.radius),
-      scheme_(std::move(scheme)),
-      local_(system.local_size()),
-      borders_(options.autonomous ? 2 : 1),
-      last_(core::rank_of(groups.all()) == core::size_of(groups.all()) - 1),
-      inexact_(inexact) {
-  work_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
-  const core::Vector scale = core::duplicate(work_.get()), unused = core::duplicate(work_.get());
-  system.scales(scale.get(), unused.get());
-  scale_ = get(scale.get());
-  set_mesh(std::move(mesh));
-}
-
-void SpreadCycle::set_mesh(std::vector<double> mesh) {
-  mesh_ = std::move(mesh);
-  const auto all = static_cast<Index>(mesh_.size()) - 1;
-  core::agree(comm(), [&] {
-    (void)core::count_of(std::int64_t{all} * scheme_.degree * system_.size() + borders_,
-                         "unknowns of a cycle (intervals x points x states)");
-    if (all < groups_.count()) throw core::InputError("fewer intervals than groups of ranks that share them");
-  });
-  first_ = groups_.first(all, groups_.index());
-  count_ = groups_.first(all, groups_.index() + 1) - first_;
-  weights_ = make_unknown();
-  const Index m = scheme_.degree;
-  const core::WriteArray w(weights_.get());
-  for (Index i = 0; i < intervals(); ++i)
-    for (Index l = 0; l < m; ++l)
-      Map<VectorXd>(w.data() + (i * m + l) * local_, local_)
-          .setConstant(options_.state_weight * length(i) * scheme_.node_weight(l) /
-                       static_cast<double>(system_.size()));
-  if (last_) w[w.size() - 1] = 1;
-}
-
-double SpreadCycle::begin(Index i) const {
-  return mesh_[at(first_ + i)];
-}
-
-double SpreadCycle::length(Index i) const {
-  return mesh_[at(first_ + i) + 1] - mesh_[at(first_ + i)];
-}
-
-double SpreadCycle::angle(double s) const {
-  return options_.autonomous ? 0.0 : 2 * std::numbers::pi * options_.turns * s;
-}
-
-core::Vector SpreadCycle::make_unknown() const {
-  return core::make_vector(
-      comm(), static_cast<PetscInt>(intervals() * scheme_.degree * local_ + (last_ ? borders_ : 0)), PETSC_DETERMINE);
-}
-
-VectorXd SpreadCycle::border_of(Vec u) const {
-  VectorXd border(borders_);
-  if (last_) border = get(u).tail(borders_);
-  MPI_Bcast(border.data(), static_cast<int>(borders_), MPI_DOUBLE, core::size_of(comm()) - 1, comm());
-  return border;
-}
+      inexact_(inexact),
+      work_(core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE)) {}
 
 // Sets the parameter and returns the period.
 double SpreadCycle::begin_point(const VectorXd& border) {
   core::agree(comm(), [&] { system_.set_parameter(border(borders_ - 1) * options_.parameter_scale); });
   refresh();
-  const double period =
-      options_.autonomous ? border(0) * period_scale_ : 2 * std::numbers::pi * options_.turns / system_.speed();
+  const double period = period_of(border);
   core::agree(comm(), [&] {
     if (!(period > 0)) throw core::DomainError("the period is not positive");
   });
@@ -114,18 +58,6 @@ void SpreadCycle::sum(MatrixXd& values) const {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
 }
 
-void SpreadCycle::sum_over_time(MatrixXd& values) const {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm());
-}
-
-MatrixXd SpreadCycle::nodes(Vec u) const {
-  const core::ReadArray ua(u);
-  MatrixXd x(local_, 1 + count_ * scheme_.degree);
-  x.rightCols(x.cols() - 1) = Map<const MatrixXd>(ua.data(), local_, x.cols() - 1);
-  x.col(0) = groups_.from_before(x.rightCols(1));
-  return x;
-}
-
 void SpreadCycle::residual(Vec u, Vec r) {
   const double period = begin_point(border_of(u));
   const MatrixXd x = nodes(u);
@@ -133,16 +65,24 @@ void SpreadCycle::residual(Vec u, Vec r) {
   groups_.together([&] { residuals(x, period, equations); });
   const core::WriteArray ra(r);
   Map<MatrixXd>(ra.data(), equations.rows(), equations.cols()) = equations;
-  if (!options_.autonomous) return;
-  MatrixXd phase(1, 1);
-  phase(0, 0) = (x.rightCols(phase_row_.cols()).array() * phase_row_.array()).sum();
-  sum_over_time(phase);
-  if (last_) ra[ra.size() - 2] = phase(0, 0) - phase_offset_;
+  put_phase(x.rightCols(x.cols() - 1), ra);
+}
+
+MatrixXd SpreadCycle::reference_rates(const Cycle& reference) {
+  system_.set_parameter(reference.parameter);
+  refresh();
+  const MatrixXd x = nodes(scatter(reference).get());
+  const Index m = scheme_.degree;
+  MatrixXd rates(local_, count_ * m);
+  groups_.together([&] {
+    for (Index k = 0; k < count_ * m; ++k) rates.col(k) = reference_rate(x, reference.period, k / m, k % m + 1);
+  });
+  return rates;
 }
 
 void SpreadCycle::carry(Index i, MatrixXd& state, const MatrixXd* rhs, bool rest, MatrixXd& added) const {
   MatrixXd x = advance(i, state, rhs, rest);
-  added.noalias() += rows_[at(i)].transpose().lazyProduct(x);
+  added.noalias() += rows_[at(i)].lazyProduct(x);
   if (x.rows() == local_)
     state = std::move(x);
   else
@@ -243,17 +183,8 @@ void SpreadCycle::linearise(Vec u, Vec row) {
     const MatrixXd x = nodes(u);
     groups_.together([&] { linearise_intervals(x, period); });
   }
-  const core::ReadArray wa(row);
-  const Index count = count_, m = scheme_.degree;
-  const Map<const MatrixXd> w(wa.data(), m * local_, count), phase(phase_row_.data(), m * local_, count);
-  rows_.resize(at(count));
-  for (Index i = 0; i < count; ++i) {
-    rows_[at(i)].resize(m * local_, borders_);
-    if (options_.autonomous) rows_[at(i)].col(0) = phase.col(i);
-    rows_[at(i)].rightCols(1) = w.col(i);
-  }
-  corner_ = MatrixXd::Zero(borders_, borders_);
-  corner_.row(borders_ - 1) = border_of(row).transpose();
+  const Index count = count_;
+  take_rows(row);
 
   const Roughly here(rough_, inexact_);
   ends_ = MatrixXd::Zero(local_, borders_);
@@ -295,25 +226,8 @@ void SpreadCycle::prepare() {
 }
 
 void SpreadCycle::multiply(Vec v, Vec y) {
-  const VectorXd border = border_of(v);
-  const core::ReadArray va(v);
-  const core::WriteArray ya(y);
-  const Index size = scheme_.degree * local_;
-  const VectorXd entering = groups_.from_before(Map<const VectorXd>(va.data() + count_ * size - local_, local_));
-  MatrixXd added = MatrixXd::Zero(borders_, 1);
-  groups_.together([&] {
-    VectorXd own, start = entering;
-    for (Index i = 0; i < count_; ++i) {
-      own = Map<const VectorXd>(va.data() + i * size, size);
-      Map<VectorXd>(ya.data() + i * size, size) = product(i, start, own) + columns(i).lazyProduct(border);
-      added.noalias() += rows_[at(i)].transpose().lazyProduct(own);
-      start = own.tail(local_);
-    }
-  });
+  OrbitProblem::multiply(v, y);
   ++products_;
-  sum_over_time(added);
-  added += corner_ * border;
-  if (last_) Map<VectorXd>(ya.data() + ya.size() - borders_, borders_) = added;
 }
 
 void SpreadCycle::solve(Vec rhs, Vec out) {

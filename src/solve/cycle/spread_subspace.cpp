@@ -179,7 +179,7 @@ MatrixXd SpreadCycle::critical_motion(double mu) {
   MatrixXd projected = basis_.transpose() * image_;
   sum(projected);
   const Path motion = forward(basis_ * spectral::eigenpairs(projected).nearest(mu).real().normalized());
-  return groups_.joined(scale_.asDiagonal() * motion.nodes, static_cast<Index>(mesh_.size()) - 1);
+  return groups_.joined(state_scale().asDiagonal() * motion.nodes, static_cast<Index>(mesh_.size()) - 1);
 }
 
 }  // namespace whirl::solve

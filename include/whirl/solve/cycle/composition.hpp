@@ -32,8 +32,9 @@ struct Run {
   MPI_Comm comm;
   Eigen::Index n = 0, borders = 0;                   ///< states, nb
   std::vector<std::unique_ptr<Interval>> intervals;  ///< this rank's
-  std::vector<Eigen::MatrixXd> columns, rows;        ///< [mn x nb], [nb x mn]
-  Eigen::MatrixXd corner;                            ///< [nb x nb]
+  std::vector<Eigen::MatrixXd> columns;              ///< [mn x nb]
+  const std::vector<Eigen::MatrixXd>& rows;          ///< [nb x mn]
+  const Eigen::MatrixXd& corner;                     ///< [nb x nb]
   std::optional<ThinRun> thin;
   int multipliers = 24;  ///< looked for at most where M is known by its products
 

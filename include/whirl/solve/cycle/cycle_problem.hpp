@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "whirl/problem/scaled_point.hpp"
-#include "whirl/problem/system.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 #include "whirl/solve/cycle/interval.hpp"
-#include "whirl/solve/cycle/periodic_problem.hpp"
+#include "whirl/solve/cycle/orbit_problem.hpp"
 #include "whirl/solve/newton/adjoint.hpp"
 
 namespace whirl::solve {
@@ -45,21 +44,16 @@ struct CycleOptions {
 /// Gamma_i x_i + ..., multiplies these along the rank's run, gathers one small system from all ranks and solves it
 /// together with the border (parameter, period, added rows), so that folds are regular. Products of Gamma lose log10 of
 /// the largest multiplier in digits, which GMRES around it restores.
-class CycleProblem : public PeriodicProblem, public Adjoint {
+class CycleProblem : public OrbitProblem, public Adjoint {
 public:
   /// `local` lives on a communicator of size 1 and outlives this.
   CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh);
   ~CycleProblem() override;
 
-  [[nodiscard]] MPI_Comm comm() const override { return comm_; }
-  [[nodiscard]] core::Vector make_unknown() const override;
-  [[nodiscard]] Vec weights() const override { return weights_.get(); }
-  [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
   void residual(Vec u, Vec r) override;
   [[nodiscard]] bool settles() const override;
   bool settle(Vec u) override;
   void linearise(Vec u, Vec row) override;
-  void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
   [[nodiscard]] Mat matrix() override;
   /// "orbit": the states at all points of time.
@@ -69,20 +63,12 @@ public:
   [[nodiscard]] std::vector<double> warm_start() override { return composition_->warm_start(); }
   void take_warm_start(const std::vector<double>& warm) override { composition_->take_warm_start(warm); }
 
-  [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
-  [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
   [[nodiscard]] const CycleOptions& options() const { return options_; }
-  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return point_.state_scale(); }
-  [[nodiscard]] Cycle gather(Vec u) const override;
-  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
-  void set_phase_reference(const Cycle& reference) override;
-  [[nodiscard]] double period_scale() const override { return period_scale_; }
   /// All of them, or where M is known by its products those above 0.2 and one below, at most CycleOptions::multipliers;
   /// where a dense band of them lies above 0.2, those above 0.5.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   [[nodiscard]] Eigen::VectorXcd multiplier_vector(std::complex<double> mu) override;
-  [[nodiscard]] MPI_Comm rows() const override { return MPI_COMM_SELF; }
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& v) override { return composition_->times(v); }
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { composition_->dominant(v, image); }
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
@@ -138,17 +124,23 @@ protected:
   [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l);
 
   /// Shaft angle at t in [0, 1] of this rank's interval i; 0 on an autonomous cycle.
-  [[nodiscard]] double angle_at(Eigen::Index i, double t) const;
-  [[nodiscard]] double interval_length(Eigen::Index i) const;
-  [[nodiscard]] problem::System& system() { return system_; }
+  [[nodiscard]] double angle_at(Eigen::Index i, double t) const { return angle(begin(i) + length(i) * t); }
+  [[nodiscard]] double interval_length(Eigen::Index i) const { return length(i); }
   [[nodiscard]] problem::ScaledPoint& point() { return point_; }
 
 private:
-  void layout(std::vector<double> mesh);
-  [[nodiscard]] double period_of(const Eigen::VectorXd& border) const;
-  [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
-  [[nodiscard]] Eigen::VectorXd previous_end(const double* local) const;
-  void set_parameter(const Eigen::VectorXd& border);
+  [[nodiscard]] const Eigen::MatrixXd& columns(Eigen::Index i) const override {
+    return run_.columns[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] Eigen::VectorXd product(Eigen::Index i, const Eigen::VectorXd& start,
+                                        const Eigen::VectorXd& x) const override {
+    return run_.intervals[static_cast<std::size_t>(i)]->multiply(start, x);
+  }
+  [[nodiscard]] Eigen::MatrixXd reference_rates(const Cycle& reference) override;
+  void forget_mesh() override;
+  [[nodiscard]] Eigen::VectorXd previous_end(const double* own) const;
+  /// Sets the parameter and returns the period.
+  double begin_point(const Eigen::VectorXd& border);
   void interpolate(Eigen::Index i, Eigen::Index j, const double* own, const Eigen::VectorXd& start, double period,
                    Eigen::VectorXd& value, Eigen::VectorXd& slope) const;
   /// d/d(period, parameter) of the equations at one point [n x borders], from dF/dp and (dF/d(dx/dt)) x'.
@@ -168,22 +160,10 @@ private:
   [[nodiscard]] static Way way_of(const CycleOptions& options, problem::BlockStructure* structure,
                                   std::size_t intervals);
 
-  MPI_Comm comm_;
-  int rank_, size_;
-  problem::System& system_;
   problem::BlockStructure* structure_;
   CycleOptions options_;
   Way way_;
   problem::ScaledPoint point_;
-  Scheme scheme_;
-  Eigen::Index n_, borders_;
-  double period_scale_ = 0;
-
-  std::vector<double> mesh_;
-  Eigen::Index first_ = 0, count_ = 0;  // this rank's intervals
-  core::Vector weights_;
-  Eigen::MatrixXd phase_row_;  // [n x local nodes], autonomous only
-  double phase_offset_ = 0;
 
   // What residual() or linearise() kept of the points, which spares linearise() at the same u their evaluation.
   std::vector<problem::PointState> kept_;
@@ -191,7 +171,7 @@ private:
   bool kept_valid_ = false;
   Eigen::VectorXd value_, slope_;  // work space
 
-  // The linearisation: linear parts by length, intervals, border columns and added rows, and how they are joined.
+  // The linearisation: linear parts by length, intervals, border columns, and how they are joined.
   std::map<double, std::shared_ptr<const LinearPart>> parts_;
   problem::ThinBlocks thin_;
   std::map<double, std::shared_ptr<const SparsePart>> sparse_parts_;

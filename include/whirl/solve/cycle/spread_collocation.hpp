@@ -43,6 +43,7 @@ public:
 
 private:
   void refresh() override;
+  void forget_mesh() override;
   void residuals(const Eigen::MatrixXd& x, double period, Eigen::MatrixXd& r) override;
   void linearise_intervals(const Eigen::MatrixXd& x, double period) override;
   [[nodiscard]] const Eigen::MatrixXd& columns(Eigen::Index i) const override {

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "whirl/core/dense_lu.hpp"
-#include "whirl/problem/system.hpp"
-#include "whirl/solve/cycle/periodic_problem.hpp"
-#include "whirl/solve/cycle/time_groups.hpp"
+#include "whirl/solve/cycle/orbit_problem.hpp"
 
 namespace whirl::solve {
 
@@ -45,27 +43,14 @@ struct NewtonPicardOptions {
 ///
 /// Groups of ranks share the intervals: each evaluates and linearises its own, and sweeps go from group to group. A
 /// Cycle has this rank's rows at the nodes of all intervals, the same in all groups.
-class SpreadCycle : public PeriodicProblem {
+class SpreadCycle : public OrbitProblem {
 public:
-  [[nodiscard]] MPI_Comm comm() const override { return groups_.all(); }
-  [[nodiscard]] core::Vector make_unknown() const override;
-  [[nodiscard]] Vec weights() const override { return weights_.get(); }
-  [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
   void residual(Vec u, Vec r) override;
   void linearise(Vec u, Vec row) override;
   /// Each of their digits costs products, and Newton's method needs few of them.
   [[nodiscard]] double linear_tolerance() const override { return 1e-5; }
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
-
-  [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
-  [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
-  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return scale_; }
-  [[nodiscard]] Cycle gather(Vec u) const override;
-  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
-  /// sum weight <x - ref, ref'> = 0 over all nodes from now on.
-  void set_phase_reference(const Cycle& reference) override;
-  [[nodiscard]] double period_scale() const override { return period_scale_; }
 
   /// All multipliers above the radius, and at least one below, or the largest if there are more than the options say;
   /// renews the subspace. Where a dense band of them lies above the radius, this is 0.5 from here on.
@@ -79,7 +64,6 @@ public:
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   /// Empty unless the subspace has it.
   [[nodiscard]] Eigen::VectorXcd multiplier_vector(std::complex<double> mu) override;
-  [[nodiscard]] MPI_Comm rows() const override { return system_.comm(); }
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& v) override;
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { v = basis_, image = image_; }
   [[nodiscard]] Path forward(const Eigen::VectorXd& v) const override;
@@ -105,14 +89,9 @@ protected:
   virtual void residuals(const Eigen::MatrixXd& x, double period, Eigen::MatrixXd& r) = 0;
   /// Takes A0_i, A_i and columns(i) at nodes x.
   virtual void linearise_intervals(const Eigen::MatrixXd& x, double period) = 0;
-  /// dR_i/d(period, parameter) [m local x nb].
-  [[nodiscard]] virtual const Eigen::MatrixXd& columns(Eigen::Index i) const = 0;
   /// X = A_i^-1 (rhs - A0_i start) [m local x k]; `rhs` may be null. With `rest` the start is zero.
   [[nodiscard]] virtual Eigen::MatrixXd advance(Eigen::Index i, const Eigen::MatrixXd& start,
                                                 const Eigen::MatrixXd* rhs, bool rest) const = 0;
-  /// A0_i start + A_i x [m local].
-  [[nodiscard]] virtual Eigen::VectorXd product(Eigen::Index i, const Eigen::VectorXd& start,
-                                                const Eigen::VectorXd& x) const = 0;
   /// The derivative of R at nodes x along each of the motions b, given at the nodes like x: [m local x N] each. The
   /// linearisation stays.
   [[nodiscard]] virtual std::vector<Eigen::MatrixXd> tangents_at(const Eigen::MatrixXd& x, double period,
@@ -121,32 +100,18 @@ protected:
   [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
                                                        Eigen::Index l) = 0;
 
-  [[nodiscard]] problem::System& system() const { return system_; }
+  [[nodiscard]] Eigen::MatrixXd reference_rates(const Cycle& reference) override;
+
   [[nodiscard]] const NewtonPicardOptions& options() const { return options_; }
-  [[nodiscard]] const TimeGroups& groups() const { return groups_; }
-  /// N, of this group; interval i begins at s = begin(i).
-  [[nodiscard]] Eigen::Index intervals() const { return count_; }
-  [[nodiscard]] double begin(Eigen::Index i) const;
-  [[nodiscard]] Eigen::Index local() const { return local_; }
-  [[nodiscard]] Eigen::Index borders() const { return borders_; }
-  [[nodiscard]] double length(Eigen::Index i) const;
-  [[nodiscard]] double angle(double s) const;
-  /// The nodes of u [local x 1 + N m]: the state that enters the first interval, and those of all intervals; that at
-  /// the start of interval i is column i m. Collective.
-  [[nodiscard]] Eigen::MatrixXd nodes(Vec u) const;
   [[nodiscard]] bool rough() const { return rough_; }
   /// Sets the parameter and returns the period.
   [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
-  [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
   /// A vector of this rank's states, for whoever needs one for a moment.
   [[nodiscard]] Vec work() const { return work_.get(); }
-  /// Another mesh; a linearisation and a phase reference are to be set again.
-  void set_mesh(std::vector<double> mesh);
 
 private:
-  /// The sum of what stands at one time over the ranks of the system, and over all.
+  /// The sum of what stands at one time over the ranks of the system.
   void sum(Eigen::MatrixXd& values) const;
-  void sum_over_time(Eigen::MatrixXd& values) const;
   /// state := that after interval i, added += rows X.
   void carry(Eigen::Index i, Eigen::MatrixXd& state, const Eigen::MatrixXd* rhs, bool rest,
              Eigen::MatrixXd& added) const;
@@ -159,24 +124,14 @@ private:
   void find_image();
   void prepare();
 
-  problem::System& system_;
-  TimeGroups groups_;
   NewtonPicardOptions options_;
   double radius_;         // multipliers above it are found
   bool limited_ = false;  // and there are more than were asked for
-  Scheme scheme_;
-  std::vector<double> mesh_;
-  Eigen::Index first_ = 0, count_ = 0;  // intervals of this group
-  Eigen::Index local_, borders_;        // this rank's states; 1 or 2
-  bool last_, inexact_, rough_ = false;
-  double period_scale_ = 0, phase_offset_ = 0;
-  Eigen::VectorXd scale_;  // of this rank's states
-  core::Vector weights_, work_;
-  Eigen::MatrixXd phase_row_;  // [local x N m]
+  bool inexact_, rough_ = false;
+  core::Vector work_;
 
   // The linearisation.
-  std::vector<Eigen::MatrixXd> rows_;            // added rows per interval, transposed [m local x nb]
-  Eigen::MatrixXd corner_, ends_, ends_added_;   // E [local x nb], and what it adds to the rows
+  Eigen::MatrixXd ends_, ends_added_;            // E [local x nb], and what it adds to the rows
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
   Eigen::MatrixXd q_ends_, image_q_ends_;
   bool image_known_ = false, rough_image_ = false;  // the same on all ranks: sizes are not, some have no states
