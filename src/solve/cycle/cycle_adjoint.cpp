@@ -61,7 +61,8 @@ void CycleProblem::interval_transposed(Index i, const double* own, const VectorX
       by_slope /= length;
       to_start.col(k) += scheme_.value(j, 0) * by_value + scheme_.slope(j, 0) * by_slope;
       for (Index l = 1; l <= scheme_.degree; ++l)
-        to_own.col(k).segment((l - 1) * local_, local_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
+        to_own.col(k).segment((l - 1) * local_, local_) +=
+            scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
     }
   }
 }
@@ -126,7 +127,8 @@ std::vector<core::Vector> CycleProblem::gradients(Vec u, const Path& v, const st
       border_sum += factor * to_border;
     });
   (void)begin_point(border_of(u));
-  const int next = (groups_.index() + 1) % groups_.count(), previous = (groups_.index() + groups_.count() - 1) % groups_.count();
+  const int next = (groups_.index() + 1) % groups_.count(),
+            previous = (groups_.index() + groups_.count() - 1) % groups_.count();
   std::vector<core::Vector> out;
   for (Index k = 0; k < many; ++k) {
     VectorXd received(local_);
@@ -189,12 +191,10 @@ Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
 }
 
 MatrixXd CycleProblem::backward(const VectorXd& w) const {
-  VectorXd lambda = w, seen = VectorXd::Zero(borders_);
-  const int n = static_cast<int>(local_);
-  if (groups_.index() < groups_.count() - 1) MPI_Recv(lambda.data(), n, MPI_DOUBLE, groups_.index() + 1, 0, comm(), MPI_STATUS_IGNORE);
-  MatrixXd weights(scheme_.degree * local_, count_);
-  lambda = run_.drive_back(nullptr, lambda, VectorXd::Zero(borders_), weights.data(), seen);
-  if (groups_.index() > 0) MPI_Send(lambda.data(), n, MPI_DOUBLE, groups_.index() - 1, 0, comm());
+  MatrixXd lambda = w, weights(scheme_.degree * local_, count_);
+  VectorXd seen = VectorXd::Zero(borders_);
+  groups_.in_turn(
+      lambda, [&] { lambda = run_.drive_back(nullptr, lambda, VectorXd::Zero(borders_), weights.data(), seen); }, true);
   return weights;
 }
 

@@ -55,8 +55,7 @@ CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Blo
   return 2 * structure->n_forces() < structure->size() ? Way::low_rank : Way::dense;
 }
 
-CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options,
-                           std::vector<double> mesh)
+CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh)
     : OrbitProblem(local, TimeGroups(time, time),
                    {options.turns, options.autonomous, options.parameter_scale, options.state_weight},
                    make_scheme(options.degree, options.points), mesh),
@@ -65,6 +64,7 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
       way_(way_of(options, structure_, mesh.size() - 1)),
       point_(local, structure_, way_ == Way::sparse),
       run_{.comm = time,
+           .groups = groups_,
            .n = local_,
            .borders = borders_,
            .intervals = {},

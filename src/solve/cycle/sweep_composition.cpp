@@ -22,40 +22,19 @@ constexpr Index whole_up_to = 1000;
 
 }  // namespace
 
-void SweepComposition::enter(double* state, Index count) const {
-  if (size_ == 1) return;
-  MPI_Recv(state, static_cast<int>(count), MPI_DOUBLE, (rank_ + size_ - 1) % size_, 0, run_->comm, MPI_STATUS_IGNORE);
-}
-
-void SweepComposition::leave(const double* state, Index count) const {
-  if (size_ == 1) return;
-  MPI_Send(state, static_cast<int>(count), MPI_DOUBLE, (rank_ + 1) % size_, 0, run_->comm);
-}
-
 void SweepComposition::turn(MatrixXd& state, MatrixXd& added, bool loaded) const {
-  const Index n = run_->n, nb = run_->borders, columns = state.cols();
-  added = MatrixXd::Zero(nb, columns);
-  MatrixXd moved(n + nb, columns);
-  // The last rank's message to the first begins the turn.
-  if (last()) {
-    moved << state, added;
-    leave(moved.data(), moved.size());
-  }
-  if (size_ > 1) {
-    enter(moved.data(), moved.size());
-    state = moved.topRows(n);
-    added = moved.bottomRows(nb);
-  }
-  for (std::size_t i = 0; i < run_->intervals.size(); ++i) {
-    run_->intervals[i]->carry(run_->rows[i], state, added);
-    if (!loaded) continue;
-    state.rightCols(nb) -= loads_[i].bottomRows(n);
-    added.rightCols(nb).noalias() -= run_->rows[i] * loads_[i];
-  }
-  if (!last()) {
-    moved << state, added;
-    leave(moved.data(), moved.size());
-  }
+  const Index n = run_->n, nb = run_->borders;
+  added = MatrixXd::Zero(nb, state.cols());
+  share(state);
+  run_->groups.in_turn(state, [&] {
+    for (std::size_t i = 0; i < run_->intervals.size(); ++i) {
+      run_->intervals[i]->carry(run_->rows[i], state, added);
+      if (!loaded) continue;
+      state.rightCols(nb) -= loads_[i].bottomRows(n);
+      added.rightCols(nb).noalias() -= run_->rows[i] * loads_[i];
+    }
+  });
+  sum(added);
 }
 
 void SweepComposition::compose(const Run& run) {
@@ -96,11 +75,10 @@ void SweepComposition::prepare() {
 void SweepComposition::solve(const double* rhs, VectorXd& border, double* x) {
   const Index n = run_->n, nb = run_->borders;
   // Forward: the motion that the right-hand side alone drives.
-  VectorXd state = VectorXd::Zero(n), added = VectorXd::Zero(nb);
-  if (rank_ > 0) enter(state.data(), n);
-  state = run_->drive(rhs, state, nullptr, nullptr, added);
-  if (!last()) leave(state.data(), n);
-  MPI_Allreduce(MPI_IN_PLACE, added.data(), static_cast<int>(nb), MPI_DOUBLE, MPI_SUM, run_->comm);
+  MatrixXd state = MatrixXd::Zero(n, 1);
+  VectorXd added = VectorXd::Zero(nb);
+  run_->groups.in_turn(state, [&] { state = run_->drive(rhs, state, nullptr, nullptr, added); });
+  sum(added);
   {
     const core::WriteArray a(right_.get());
     if (last()) Map<VectorXd>(a.data(), n + nb) << state, border - added;
@@ -113,30 +91,26 @@ void SweepComposition::solve(const double* rhs, VectorXd& border, double* x) {
       border = Map<const VectorXd>(a.data() + n, nb);
     }
   }
-  MPI_Bcast(border.data(), static_cast<int>(nb), MPI_DOUBLE, size_ - 1, run_->comm);
+  share(border);
   // Back: from the start and the border.
-  if (last()) leave(state.data(), n);
-  enter(state.data(), n);
-  state = run_->drive(rhs, state, &border, x, added);
-  if (!last()) leave(state.data(), n);
+  share(state);
+  run_->groups.in_turn(state, [&] { state = run_->drive(rhs, state, &border, x, added); });
 }
 
-void SweepComposition::turn_back(const double* rhs, VectorXd& lambda, VectorXd sigma, double* z, VectorXd& seen) const {
-  const auto n = static_cast<int>(run_->n), nb = static_cast<int>(run_->borders);
-  MPI_Bcast(sigma.data(), nb, MPI_DOUBLE, size_ - 1, run_->comm);
-  seen = VectorXd::Zero(nb);
-  if (!last()) MPI_Recv(lambda.data(), n, MPI_DOUBLE, rank_ + 1, 0, run_->comm, MPI_STATUS_IGNORE);
-  lambda = run_->drive_back(rhs, lambda, sigma, z, seen);
-  if (size_ > 1) {
-    MPI_Send(lambda.data(), n, MPI_DOUBLE, (rank_ + size_ - 1) % size_, 0, run_->comm);
-    if (last()) MPI_Recv(lambda.data(), n, MPI_DOUBLE, 0, 0, run_->comm, MPI_STATUS_IGNORE);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, seen.data(), nb, MPI_DOUBLE, MPI_SUM, run_->comm);
+void SweepComposition::turn_back(const double* rhs, MatrixXd& lambda, VectorXd& sigma, double* z,
+                                 VectorXd& seen) const {
+  seen = VectorXd::Zero(run_->borders);
+  share(lambda);
+  share(sigma);
+  run_->groups.in_turn(
+      lambda, [&] { lambda = run_->drive_back(rhs, lambda, sigma, z, seen); }, true);
+  sum(seen);
 }
 
 void SweepComposition::solve_transposed(const double* rhs, VectorXd& border, double* x) {
   const Index n = run_->n, nb = run_->borders;
-  VectorXd lambda = VectorXd::Zero(n), sigma = VectorXd::Zero(nb), seen;
+  MatrixXd lambda = MatrixXd::Zero(n, 1);
+  VectorXd sigma = VectorXd::Zero(nb), seen;
   turn_back(rhs, lambda, sigma, nullptr, seen);
   {
     const core::WriteArray a(right_.get());
@@ -151,7 +125,6 @@ void SweepComposition::solve_transposed(const double* rhs, VectorXd& border, dou
     }
   }
   turn_back(rhs, lambda, sigma, x, seen);
-  MPI_Bcast(sigma.data(), static_cast<int>(nb), MPI_DOUBLE, size_ - 1, run_->comm);
   border = sigma;
 }
 
@@ -205,26 +178,25 @@ VectorXd SweepComposition::critical_start(double mu) {
     for (int k = 0; k < 4; ++k) z = lu.solve(z).normalized();
     v = found_ ? VectorXd(basis_ * z) : z;
   }
-  MPI_Bcast(v.data(), static_cast<int>(v.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  share(v);
   return v;
 }
 
 MatrixXd SweepComposition::times(const MatrixXd& v) {
   MatrixXd state = v, added;
   turn(state, added, false);
-  MPI_Bcast(state.data(), static_cast<int>(state.size()), MPI_DOUBLE, size_ - 1, run_->comm);
   return state;
 }
 
 MatrixXd SweepComposition::times_transposed(const MatrixXd& w) {
   MatrixXd out = w;
-  VectorXd lambda, seen;
+  MatrixXd lambda;
+  VectorXd none = VectorXd::Zero(run_->borders), seen;
   for (Index k = 0; k < w.cols(); ++k) {
     lambda = w.col(k);
-    turn_back(nullptr, lambda, VectorXd::Zero(run_->borders), nullptr, seen);
+    turn_back(nullptr, lambda, none, nullptr, seen);
     out.col(k) = lambda;
   }
-  MPI_Bcast(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, size_ - 1, run_->comm);
   return out;
 }
 
@@ -234,7 +206,7 @@ std::vector<double> SweepComposition::warm_start() {
   std::vector<double> warm(static_cast<std::size_t>(1 + run_->n * basis_.cols()));
   warm[0] = radius_;
   if (last()) std::copy_n(basis_.data(), basis_.size(), warm.data() + 1);
-  if (size_ > 1) MPI_Bcast(warm.data(), static_cast<int>(warm.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  share(warm);
   return warm;
 }
 
@@ -247,15 +219,17 @@ void SweepComposition::dominant(MatrixXd& v, MatrixXd& image) {
     v = basis_;
     image = image_;
   }
-  for (MatrixXd* m : {&v, &image}) MPI_Bcast(m->data(), static_cast<int>(m->size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  share(v);
+  share(image);
 }
 
 VectorXd SweepComposition::entering(const VectorXd& v) {
   MatrixXd state = v, added = MatrixXd::Zero(run_->borders, 1);
-  if (rank_ > 0) enter(state.data(), state.size());
-  const VectorXd here = state;
-  run_->carry(state, added);
-  if (!last()) leave(state.data(), state.size());
+  VectorXd here;
+  run_->groups.in_turn(state, [&] {
+    here = state;
+    run_->carry(state, added);
+  });
   return here;
 }
 

@@ -40,16 +40,22 @@ private:
   [[nodiscard]] bool last() const { return rank_ == size_ - 1; }
   [[nodiscard]] Eigen::Index local() const { return last() ? run_->n : 0; }
   void set_up(const Run& run);
-  // Waits for the state that leaves the previous rank; the first one takes what the last rank gives.
-  void enter(double* state, Eigen::Index count) const;
-  void leave(const double* state, Eigen::Index count) const;
-  // Once around: `state` [n x columns] and the rows' sums [nb x columns] are read and left on the last rank. With
-  // `loaded` the last nb columns bear the load of the border.
+  // Once around: `state` [n x columns] is read on the last rank; it and the rows' sums [nb x columns] are left on all.
+  // With `loaded` the last nb columns bear the load of the border.
   void turn(Eigen::MatrixXd& state, Eigen::MatrixXd& added, bool loaded) const;
-  // Once around backwards: lambda [n] is read and left on the last rank, which also knows sigma; `seen` is summed over
-  // all ranks.
-  void turn_back(const double* rhs, Eigen::VectorXd& lambda, Eigen::VectorXd sigma, double* z,
+  // Once around backwards: lambda [n x 1] and sigma are read on the last rank; lambda, sigma and `seen` [nb], the
+  // sum of all ranks, are left on all.
+  void turn_back(const double* rhs, Eigen::MatrixXd& lambda, Eigen::VectorXd& sigma, double* z,
                  Eigen::VectorXd& seen) const;
+  // The last rank's on all, and the sum of all.
+  template <class Values>
+  void share(Values& v) const {
+    if (size_ > 1) MPI_Bcast(v.data(), static_cast<int>(v.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  }
+  template <class Values>
+  void sum(Values& v) const {
+    MPI_Allreduce(MPI_IN_PLACE, v.data(), static_cast<int>(v.size()), MPI_DOUBLE, MPI_SUM, run_->comm);
+  }
   void prepare();
   // The small system, and what its preconditioner makes of a vector.
   void multiply(Vec v, Vec y) const;

@@ -27,7 +27,8 @@ void SweepComposition::multiply(Vec v, Vec y) const {
 
 void SweepComposition::multiply_transposed(Vec v, Vec y) const {
   const Index n = run_->n, nb = run_->borders;
-  VectorXd x, lambda = VectorXd::Zero(n), sigma = VectorXd::Zero(nb), seen;
+  MatrixXd lambda = MatrixXd::Zero(n, 1);
+  VectorXd x, sigma = VectorXd::Zero(nb), seen;
   {
     const core::ReadArray a(v);
     if (last()) {

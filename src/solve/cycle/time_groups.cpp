@@ -46,16 +46,18 @@ void TimeGroups::together(const std::function<void()>& work) const {
   });
 }
 
-void TimeGroups::in_turn(MatrixXd& state, const std::function<void()>& work) const {
+void TimeGroups::in_turn(MatrixXd& state, const std::function<void()>& work, bool back) const {
   if (count_ == 1) return work();
   const Index rows = state.rows(), columns = state.cols();
-  const int n = mpi_count(state.size());
+  const int n = mpi_count(state.size()), before = back ? index_ + 1 : index_ - 1,
+            after = back ? index_ - 1 : index_ + 1;
+  const auto exists = [&](int group) { return group >= 0 && group < count_; };
   together([&] {
     std::exception_ptr caught;
     char failed = 0;
-    if (index_ > 0) {
-      MPI_Recv(&failed, 1, MPI_CHAR, index_ - 1, tag, time_, MPI_STATUS_IGNORE);
-      MPI_Recv(state.data(), n, MPI_DOUBLE, index_ - 1, tag, time_, MPI_STATUS_IGNORE);
+    if (exists(before)) {
+      MPI_Recv(&failed, 1, MPI_CHAR, before, tag, time_, MPI_STATUS_IGNORE);
+      MPI_Recv(state.data(), n, MPI_DOUBLE, before, tag, time_, MPI_STATUS_IGNORE);
     }
     if (failed == 0) try {
         work();
@@ -66,11 +68,11 @@ void TimeGroups::in_turn(MatrixXd& state, const std::function<void()>& work) con
         failed = 1;
         state.setZero(rows, columns);
       }
-    if (index_ + 1 < count_) {
-      MPI_Send(&failed, 1, MPI_CHAR, index_ + 1, tag, time_);
-      MPI_Send(state.data(), n, MPI_DOUBLE, index_ + 1, tag, time_);
+    if (exists(after)) {
+      MPI_Send(&failed, 1, MPI_CHAR, after, tag, time_);
+      MPI_Send(state.data(), n, MPI_DOUBLE, after, tag, time_);
     }
-    MPI_Bcast(state.data(), n, MPI_DOUBLE, count_ - 1, time_);
+    MPI_Bcast(state.data(), n, MPI_DOUBLE, back ? 0 : count_ - 1, time_);
     if (caught) std::rethrow_exception(caught);
   });
 }

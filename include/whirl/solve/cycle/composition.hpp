@@ -11,6 +11,7 @@
 
 #include "whirl/problem/thin_blocks.hpp"
 #include "whirl/solve/cycle/interval.hpp"
+#include "whirl/solve/cycle/time_groups.hpp"
 
 namespace whirl::solve {
 
@@ -30,6 +31,7 @@ struct ThinRun {
 ///     added rows:  sum rows_i X_i + corner d = y_c              d: period and parameter [nb]
 struct Run {
   MPI_Comm comm;
+  const TimeGroups& groups;                          ///< each of one rank, those of comm
   Eigen::Index n = 0, borders = 0;                   ///< states, nb
   std::vector<std::unique_ptr<Interval>> intervals;  ///< this rank's
   std::vector<Eigen::MatrixXd> columns;              ///< [mn x nb]

@@ -91,7 +91,7 @@ public:
   [[nodiscard]] Path forward(const Eigen::VectorXd& v) const override;
   [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const override;
   /// Weights [mn x local intervals] of the equations with w . monodromy() v = -(sum weights . dR V) for changes dR of
-  /// the linearised equations along the motion V = forward(v). Not collective.
+  /// the linearised equations along the motion V = forward(v). Collective.
   [[nodiscard]] Eigen::MatrixXd backward(const Eigen::VectorXd& w) const;
   /// Gradients [layout of u] of sum_i weights_i . dR_i/dx(u) V, one for each `weights`: those of -w . monodromy() v.
   [[nodiscard]] std::vector<core::Vector> gradients(Vec u, const Path& v, const std::vector<Eigen::MatrixXd>& weights);

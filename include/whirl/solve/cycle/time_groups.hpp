@@ -33,8 +33,9 @@ public:
   /// Runs `work` in each group, on intervals of its own; if it throws in one, all ranks throw as in core::agree().
   void together(const std::function<void()>& work) const;
   /// Runs `work` in one group after the other: it takes `state` through the intervals of its group, and the next group
-  /// goes on from there. In the end all have the last group's. Throws as together().
-  void in_turn(Eigen::MatrixXd& state, const std::function<void()>& work) const;
+  /// goes on from there; `back`: from the last group to the first. In the end all have the state of the group that was
+  /// the last to work. Throws as together().
+  void in_turn(Eigen::MatrixXd& state, const std::function<void()>& work, bool back = false) const;
   /// What the group before this one has in `own`, round in a ring.
   [[nodiscard]] Eigen::VectorXd from_before(const Eigen::VectorXd& own) const;
   /// From this rank's columns, as many for each of its intervals, those of all `intervals`.
