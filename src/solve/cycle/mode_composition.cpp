@@ -193,7 +193,7 @@ void ModeComposition::solve_transposed(const double* rhs, VectorXd& border, doub
   MatrixXd seen = all_points(modes_.into, answer * thin.blocks->b);
   for (std::size_t k = 0; k < nb; ++k) border(static_cast<Index>(k)) -= dot(column_[k], answer);
   small_solve(seen, border, true);
-  MatrixXd driven = own_lanes(modes_.seen, changes_transposed(seen)) * thin.blocks->c;
+  MatrixXd driven = own_lanes(modes_.seen, changes(seen, true)) * thin.blocks->c;
   pencil_.solve_adjoint(driven);
   answer += driven;
   if (with_rows_)

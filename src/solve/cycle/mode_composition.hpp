@@ -58,11 +58,9 @@ private:
   // The same for a few functions of time, known at all points on all ranks: [2 lanes x few] and [P x few].
   [[nodiscard]] Eigen::MatrixXd own_lanes(const Eigen::MatrixXd& by_point, const Eigen::MatrixXd& y) const;
   [[nodiscard]] Eigen::MatrixXd all_points(const Eigen::MatrixXd& by_point, const Eigen::MatrixXd& lanes) const;
-  // (S - S_0) inputs, its transpose, H forces, its transpose, at all points.
-  [[nodiscard]] Eigen::MatrixXd changes(const Eigen::MatrixXd& inputs) const;
-  [[nodiscard]] Eigen::MatrixXd changes_transposed(const Eigen::MatrixXd& forces) const;
-  [[nodiscard]] Eigen::MatrixXd receptance(const Eigen::MatrixXd& forces) const;
-  [[nodiscard]] Eigen::MatrixXd receptance_transposed(const Eigen::MatrixXd& inputs) const;
+  // (S - S_0) inputs and H forces at all points, and their transposes.
+  [[nodiscard]] Eigen::MatrixXd changes(const Eigen::MatrixXd& v, bool transposed = false) const;
+  [[nodiscard]] Eigen::MatrixXd receptance(const Eigen::MatrixXd& v, bool transposed = false) const;
   [[nodiscard]] double dot(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
   // The small system: `forces` [P x r] and `border` hold the right-hand sides and take the answers.
   void small_solve(Eigen::MatrixXd& forces, Eigen::VectorXd& border, bool transposed);

@@ -49,48 +49,32 @@ MatrixXd ModeComposition::all_points(const MatrixXd& by_point, const MatrixXd& l
   return out;
 }
 
-MatrixXd ModeComposition::changes(const MatrixXd& inputs) const {
-  MatrixXd out = MatrixXd::Zero(points_, run_->thin->blocks->b.cols());
-  for (const Change& c : changes_) out.col(c.force).array() += c.values * inputs.col(c.input).array();
+MatrixXd ModeComposition::changes(const MatrixXd& v, bool transposed) const {
+  const problem::ThinBlocks& k = *run_->thin->blocks;
+  MatrixXd out = MatrixXd::Zero(points_, transposed ? k.c.rows() : k.b.cols());
+  for (const Change& c : changes_)
+    out.col(transposed ? c.input : c.force).array() += c.values * v.col(transposed ? c.force : c.input).array();
   return out;
 }
 
-MatrixXd ModeComposition::changes_transposed(const MatrixXd& forces) const {
-  MatrixXd out = MatrixXd::Zero(points_, run_->thin->blocks->c.rows());
-  for (const Change& c : changes_) out.col(c.input).array() += c.values * forces.col(c.force).array();
-  return out;
-}
-
-MatrixXd ModeComposition::receptance(const MatrixXd& forces) const {
-  const Index r = forces.cols(), w = transfer_.cols() / r, lanes = modes_.lanes;
-  const MatrixXd in = modes_.into.transpose() * forces;
-  MatrixXd out = MatrixXd::Zero(in.rows(), w);
+// Transposed, real and imaginary parts of a transfer function stand as those of its conjugate.
+MatrixXd ModeComposition::receptance(const MatrixXd& v, bool transposed) const {
+  const Index r = run_->thin->blocks->b.cols(), w = transfer_.cols() / r, lanes = modes_.lanes;
+  const MatrixXd &to = transposed ? modes_.seen : modes_.into, &from = transposed ? modes_.into : modes_.seen,
+                 in = to.transpose() * v;
+  MatrixXd out = MatrixXd::Zero(in.rows(), transposed ? r : w);
+  const double sign = transposed ? -1 : 1;
   for (Index a = 0; a < r; ++a)
     for (Index b = 0; b < w; ++b)
       for (Index share = 0; share < in.rows(); share += 2 * lanes) {
+        const Index x = transposed ? b : a, y = transposed ? a : b;
         const auto re = transfer_.col(b + w * a).segment(share, lanes).array(),
                    im = transfer_.col(b + w * a).segment(share + lanes, lanes).array(),
-                   fr = in.col(a).segment(share, lanes).array(), fi = in.col(a).segment(share + lanes, lanes).array();
-        out.col(b).segment(share, lanes).array() += re * fr - im * fi;
-        out.col(b).segment(share + lanes, lanes).array() += re * fi + im * fr;
+                   xr = in.col(x).segment(share, lanes).array(), xi = in.col(x).segment(share + lanes, lanes).array();
+        out.col(y).segment(share, lanes).array() += re * xr - sign * im * xi;
+        out.col(y).segment(share + lanes, lanes).array() += re * xi + sign * im * xr;
       }
-  return modes_.seen * out;
-}
-
-MatrixXd ModeComposition::receptance_transposed(const MatrixXd& inputs) const {
-  const Index w = inputs.cols(), r = transfer_.cols() / w, lanes = modes_.lanes;
-  const MatrixXd in = modes_.seen.transpose() * inputs;
-  MatrixXd out = MatrixXd::Zero(in.rows(), r);
-  for (Index a = 0; a < r; ++a)
-    for (Index b = 0; b < w; ++b)
-      for (Index share = 0; share < in.rows(); share += 2 * lanes) {
-        const auto re = transfer_.col(b + w * a).segment(share, lanes).array(),
-                   im = transfer_.col(b + w * a).segment(share + lanes, lanes).array(),
-                   hr = in.col(b).segment(share, lanes).array(), hi = in.col(b).segment(share + lanes, lanes).array();
-        out.col(a).segment(share, lanes).array() += re * hr + im * hi;
-        out.col(a).segment(share + lanes, lanes).array() += re * hi - im * hr;
-      }
-  return modes_.into * out;
+  return from * out;
 }
 
 double ModeComposition::dot(const MatrixXd& a, const MatrixXd& b) const {
@@ -106,7 +90,7 @@ void ModeComposition::small_product(const double* x, double* y, bool transposed)
   Map<MatrixXd> out(y, points_, r);
   Map<VectorXd> out_border(y + size, nb);
   if (transposed) {
-    out = forces - receptance_transposed(changes_transposed(forces));
+    out = forces - receptance(changes(forces, true), true);
     out_border = corner_.transpose() * border;
   } else {
     out = forces - changes(receptance(forces));
