@@ -7,8 +7,19 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-void Run::carry(MatrixXd& state, MatrixXd& added) const {
-  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i]->carry(rows[i], state, added);
+std::vector<MatrixXd> Run::loads() const {
+  std::vector<MatrixXd> out = columns;
+  for (std::size_t i = 0; i < intervals.size(); ++i) intervals[i]->solve(out[i]);
+  return out;
+}
+
+void Run::carry(MatrixXd& state, MatrixXd& added, const std::vector<MatrixXd>& loads) const {
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    intervals[i]->carry(rows[i], state, added);
+    if (loads.empty()) continue;
+    state.rightCols(borders) -= loads[i].bottomRows(n);
+    added.rightCols(borders).noalias() -= rows[i] * loads[i];
+  }
 }
 
 VectorXd Run::drive(const double* rhs, const VectorXd& start, const VectorXd* border, double* x,

@@ -170,24 +170,27 @@ std::vector<MatrixXd> CycleProblem::tangents(Vec u, double step, const Path& a, 
   return y;
 }
 
-Path CycleProblem::forward(const VectorXd& v) const {
-  Path path{composition_->entering(v), MatrixXd(local_, count_ * scheme_.degree), {}};
-  VectorXd added = VectorXd::Zero(borders_);
-  (void)run_.drive(nullptr, path.start, nullptr, path.nodes.data(), added);
-  return path;
-}
-
-Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
+// The motion from `start` under `rhs`, if that is not null.
+Path CycleProblem::driven(const VectorXd& start, const double* rhs, VectorXd& end) const {
   Path path{{}, MatrixXd(local_, count_ * scheme_.degree), {}};
-  const MatrixXd rhs = -y;
-  MatrixXd state = MatrixXd::Zero(local_, 1);
+  MatrixXd state = start;
   VectorXd added = VectorXd::Zero(borders_);
   groups_.in_turn(state, [&] {
     path.start = state;
-    state = run_.drive(rhs.data(), path.start, nullptr, path.nodes.data(), added);
+    state = run_.drive(rhs, path.start, nullptr, path.nodes.data(), added);
   });
   end = state;
   return path;
+}
+
+Path CycleProblem::forward(const VectorXd& v) const {
+  VectorXd end;
+  return driven(v, nullptr, end);
+}
+
+Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
+  const MatrixXd rhs = -y;
+  return driven(VectorXd::Zero(local_), rhs.data(), end);
 }
 
 MatrixXd CycleProblem::backward(const VectorXd& w) const {

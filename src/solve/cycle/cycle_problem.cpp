@@ -311,11 +311,7 @@ MatrixXd CycleProblem::critical_motion(double mu) {
 }
 
 MatrixXd CycleProblem::propagate(const VectorXd& v) const {
-  const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
-  MatrixXd whole = MatrixXd::Zero(local_, total * m);
-  whole.middleCols(first_ * m, count_ * m) = forward(v).nodes;
-  MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm());
-  return whole;
+  return groups_.joined(forward(v).nodes, static_cast<Index>(mesh_.size()) - 1);
 }
 
 }  // namespace whirl::solve

@@ -32,9 +32,6 @@ public:
     v.setIdentity(run_->n, run_->n);
     image = monodromy_;
   }
-  VectorXd entering(const VectorXd& v) override {
-    return to_rank_[static_cast<std::size_t>(rank_)].leftCols(run_->n) * v;
-  }
 
 private:
   const Run* run_ = nullptr;
@@ -50,14 +47,8 @@ void DenseComposition::compose(const Run& run) {
   rank_ = core::rank_of(run.comm);
   size_ = core::size_of(run.comm);
   const Index n = run.n, nb = run.borders, all = n + nb;
-  MatrixXd map = MatrixXd::Zero(all, all), state = MatrixXd::Identity(n, all), added = MatrixXd::Zero(nb, all), loaded;
-  for (std::size_t i = 0; i < run.intervals.size(); ++i) {
-    run.intervals[i]->carry(run.rows[i], state, added);
-    loaded = run.columns[i];
-    run.intervals[i]->solve(loaded);
-    state.rightCols(nb) -= loaded.bottomRows(n);
-    added.rightCols(nb).noalias() -= run.rows[i] * loaded;
-  }
+  MatrixXd map = MatrixXd::Zero(all, all), state = MatrixXd::Identity(n, all), added = MatrixXd::Zero(nb, all);
+  run.carry(state, added, run.loads());
   map << state, added;
 
   rank_maps_.assign(static_cast<std::size_t>(size_), map);

@@ -96,9 +96,7 @@ bool CycleProblem::settle(Vec u) {
     nodes = Map<const MatrixXd>(ua.data(), local_, count_ * m);
   }
   try {
-    core::agree(comm(), [&] {
-      (void)begin_point(border);
-    });
+    core::agree(comm(), [&] { (void)begin_point(border); });
     VectorXd entered;
     double moved = 0;
     for (int lap = 0; lap < most_laps * groups_.count(); ++lap) {
@@ -110,8 +108,7 @@ bool CycleProblem::settle(Vec u) {
       core::agree(comm(), [&] {
         for (Index i = 0; i < count_; ++i) {
           const VectorXd start = i == 0 ? before : VectorXd(nodes.col(i * m - 1));
-          const double change =
-              march_->interval(length(i) * period_of(border), start, nodes.col(i * m).data());
+          const double change = march_->interval(length(i) * period_of(border), start, nodes.col(i * m).data());
           if (lap > 0 && change <= enough) break;  // all behind it stays
         }
       });

@@ -36,7 +36,6 @@ public:
   Eigen::MatrixXd times(const Eigen::MatrixXd& v) override { return sweeps().times(v); }
   Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) override { return sweeps().times_transposed(w); }
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { sweeps().dominant(v, image); }
-  Eigen::VectorXd entering(const Eigen::VectorXd& v) override { return sweeps().entering(v); }
   std::vector<double> warm_start() override;
   void take_warm_start(const std::vector<double>& warm) override;
 

@@ -106,30 +106,17 @@ MatrixXd SpreadCycle::times(const MatrixXd& v) {
   return monodromy_times(v, added);
 }
 
-Path SpreadCycle::forward(const VectorXd& v) const {
+// The motion from `start` under -y, if that is not null.
+Path SpreadCycle::driven(const VectorXd& start, const MatrixXd* y, VectorXd& end) const {
   const Index m = scheme_.degree;
-  Path path{v, MatrixXd(local_, count_ * m), {}};
-  MatrixXd state = v;
+  Path path{{}, MatrixXd(local_, count_ * m), {}};
+  MatrixXd state = start;
   groups_.in_turn(state, [&] {
     path.start = state;
     for (Index i = 0; i < count_; ++i) {
-      const MatrixXd x = advance(i, state, nullptr, false);
-      state = x.bottomRows(local_);
-      path.nodes.middleCols(i * m, m) = x.reshaped(local_, m);
-    }
-  });
-  products_ += 1;
-  return path;
-}
-
-Path SpreadCycle::forced(const MatrixXd& y, VectorXd& end) const {
-  const Index m = scheme_.degree;
-  Path path{VectorXd::Zero(local_), MatrixXd(local_, count_ * m), {}};
-  MatrixXd state = path.start;
-  groups_.in_turn(state, [&] {
-    path.start = state;
-    for (Index i = 0; i < count_; ++i) {
-      const MatrixXd load = -y.col(i), x = advance(i, state, &load, first_ + i == 0);
+      MatrixXd load;
+      if (y) load = -y->col(i);
+      const MatrixXd x = advance(i, state, y ? &load : nullptr, y && first_ + i == 0);
       state = x.bottomRows(local_);
       path.nodes.middleCols(i * m, m) = x.reshaped(local_, m);
     }
@@ -137,6 +124,15 @@ Path SpreadCycle::forced(const MatrixXd& y, VectorXd& end) const {
   end = state;
   products_ += 1;
   return path;
+}
+
+Path SpreadCycle::forward(const VectorXd& v) const {
+  VectorXd end;
+  return driven(v, nullptr, end);
+}
+
+Path SpreadCycle::forced(const MatrixXd& y, VectorXd& end) const {
+  return driven(VectorXd::Zero(local_), &y, end);
 }
 
 std::vector<MatrixXd> SpreadCycle::tangents(Vec u, double step, const Path& a, const std::vector<const Path*>& b) {

@@ -22,18 +22,10 @@ constexpr Index whole_up_to = 1000;
 
 }  // namespace
 
-void SweepComposition::turn(MatrixXd& state, MatrixXd& added, bool loaded) const {
-  const Index n = run_->n, nb = run_->borders;
-  added = MatrixXd::Zero(nb, state.cols());
+void SweepComposition::turn(MatrixXd& state, MatrixXd& added, const std::vector<MatrixXd>& loads) const {
+  added = MatrixXd::Zero(run_->borders, state.cols());
   share(state);
-  run_->groups.in_turn(state, [&] {
-    for (std::size_t i = 0; i < run_->intervals.size(); ++i) {
-      run_->intervals[i]->carry(run_->rows[i], state, added);
-      if (!loaded) continue;
-      state.rightCols(nb) -= loads_[i].bottomRows(n);
-      added.rightCols(nb).noalias() -= run_->rows[i] * loads_[i];
-    }
-  });
+  run_->groups.in_turn(state, [&] { run_->carry(state, added, loads); });
   sum(added);
 }
 
@@ -47,11 +39,7 @@ void SweepComposition::compose(const Run& run) {
     if (columns > 0 && last()) basis_ = Map<const MatrixXd>(taken_->data() + 1, run.n, columns);
     taken_.reset();
   }
-  loads_.resize(run.intervals.size());
-  for (std::size_t i = 0; i < run.intervals.size(); ++i) {
-    loads_[i] = run.columns[i];
-    run.intervals[i]->solve(loads_[i]);
-  }
+  loads_ = run.loads();
   prepare();
 }
 
@@ -60,7 +48,7 @@ void SweepComposition::prepare() {
   const Index n = run_->n, nb = run_->borders, p = basis_.cols();
   MatrixXd state = MatrixXd::Zero(n, p + nb), added;
   if (last()) state.leftCols(p) = basis_;
-  turn(state, added, true);
+  turn(state, added, loads_);
   if (!last()) return;
   image_ = state.leftCols(p);
   basis_added_ = added.leftCols(p);
@@ -142,7 +130,7 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
       const core::ReadArray a(v);
       if (last()) state = Map<const VectorXd>(a.data(), run_->n);
     }
-    turn(state, added, false);
+    turn(state, added);
     const core::WriteArray a(v);
     if (last()) Map<VectorXd>(a.data(), run_->n) = state.col(0);
   };
@@ -184,7 +172,7 @@ VectorXd SweepComposition::critical_start(double mu) {
 
 MatrixXd SweepComposition::times(const MatrixXd& v) {
   MatrixXd state = v, added;
-  turn(state, added, false);
+  turn(state, added);
   return state;
 }
 
@@ -221,16 +209,6 @@ void SweepComposition::dominant(MatrixXd& v, MatrixXd& image) {
   }
   share(v);
   share(image);
-}
-
-VectorXd SweepComposition::entering(const VectorXd& v) {
-  MatrixXd state = v, added = MatrixXd::Zero(run_->borders, 1);
-  VectorXd here;
-  run_->groups.in_turn(state, [&] {
-    here = state;
-    run_->carry(state, added);
-  });
-  return here;
 }
 
 std::unique_ptr<Composition> make_sweep_composition() {

@@ -32,7 +32,6 @@ public:
   Eigen::MatrixXd times(const Eigen::MatrixXd& v) override;
   Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) override;
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override;
-  Eigen::VectorXd entering(const Eigen::VectorXd& v) override;
   std::vector<double> warm_start() override;
   void take_warm_start(const std::vector<double>& warm) override { taken_ = warm; }
 
@@ -41,8 +40,7 @@ private:
   [[nodiscard]] Eigen::Index local() const { return last() ? run_->n : 0; }
   void set_up(const Run& run);
   // Once around: `state` [n x columns] is read on the last rank; it and the rows' sums [nb x columns] are left on all.
-  // With `loaded` the last nb columns bear the load of the border.
-  void turn(Eigen::MatrixXd& state, Eigen::MatrixXd& added, bool loaded) const;
+  void turn(Eigen::MatrixXd& state, Eigen::MatrixXd& added, const std::vector<Eigen::MatrixXd>& loads = {}) const;
   // Once around backwards: lambda [n x 1] and sigma are read on the last rank; lambda, sigma and `seen` [nb], the
   // sum of all ranks, are left on all.
   void turn_back(const double* rhs, Eigen::MatrixXd& lambda, Eigen::VectorXd& sigma, double* z,

@@ -17,7 +17,7 @@ void SweepComposition::multiply(Vec v, Vec y) const {
     const core::ReadArray a(v);
     if (last()) state = (x = Map<const VectorXd>(a.data(), n + nb)).head(n);
   }
-  turn(state, added, false);
+  turn(state, added);
   const core::WriteArray out(y);
   if (!last()) return;
   Map<VectorXd> answer(out.data(), n + nb);

@@ -215,8 +215,12 @@ public:
     slope += x_start.head(n) * p.scheme.slope.col(0).transpose();
     slope /= p.length;
     const MatrixXd inputs = p.c * value, s = nodes.bottomRows(own_).transpose();
-    MatrixXd force(p.r, m), rows(m, own_), core = p.l0 * value;
-    for (Index j = 0; j < m; ++j) force.col(j) = tangent(j) * inputs.col(j);
+    MatrixXd force(p.r, m), rows(m, own_), core(n, m);
+    for (Index j = 0; j < m; ++j) {
+      core.col(j).noalias() = p.l0 * value.col(j);
+      core.col(j).noalias() += p.l1 * slope.col(j);
+      force.col(j).noalias() = tangent(j) * inputs.col(j);
+    }
     VectorXd mine;
     for (std::size_t i = 0; i < films_.size(); ++i) {
       const Index first = films_[i].first;
@@ -226,7 +230,6 @@ public:
       for (Index e = 0; e < eta.cols(); ++e) eta.col(e) = inputs.row(input_row(i, 0, e)).transpose();
       blocks_[i]->add_inputs(1, eta.data(), rows.data() + first * m);
     }
-    core += p.l1 * slope;
     core -= p.b * force;
     VectorXd y(m * n_);
     y.reshaped(n_, m) << core, rows.transpose();

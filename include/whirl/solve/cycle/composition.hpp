@@ -40,8 +40,11 @@ struct Run {
   std::optional<ThinRun> thin;
   int multipliers = 24;  ///< looked for at most where M is known by its products
 
-  /// Carries states [n x k] over this rank's intervals; added += rows X [nb x k].
-  void carry(Eigen::MatrixXd& state, Eigen::MatrixXd& added) const;
+  /// A_i^-1 columns_i of this rank's intervals.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> loads() const;
+  /// Carries states [n x k] over this rank's intervals; added += rows X [nb x k]. The last nb columns bear these loads,
+  /// if there are any.
+  void carry(Eigen::MatrixXd& state, Eigen::MatrixXd& added, const std::vector<Eigen::MatrixXd>& loads) const;
   /// Particular solution of this rank's intervals from a start state: `rhs` and, if not null, `x` [intervals m n];
   /// minus the columns times `border` where that is not null. Returns the end state; added += rows X.
   [[nodiscard]] Eigen::VectorXd drive(const double* rhs, const Eigen::VectorXd& start, const Eigen::VectorXd* border,
@@ -86,8 +89,6 @@ public:
   /// What V is known by, on every rank, for another composition of as many states; to be taken before compose().
   [[nodiscard]] virtual std::vector<double> warm_start() { return {}; }
   virtual void take_warm_start(const std::vector<double>& /*warm*/) {}
-  /// The state in which a homogeneous motion from x_0 = v enters this rank's run.
-  [[nodiscard]] virtual Eigen::VectorXd entering(const Eigen::VectorXd& v) = 0;
 };
 
 /// Multiplies the maps of all intervals into one dense matrix; time-parallel. For up to some hundred states.

@@ -153,6 +153,7 @@ private:
   void displaced(Vec u, double step, const Path& along,
                  const std::function<void(Eigen::Index, const double*, const Eigen::VectorXd&, double)>& work);
   [[nodiscard]] Path path_of(Vec v) const;
+  [[nodiscard]] Path driven(const Eigen::VectorXd& start, const double* rhs, Eigen::VectorXd& end) const;
   [[nodiscard]] static double largest(const Path& path, MPI_Comm comm);
 
   /// How an interval is condensed.

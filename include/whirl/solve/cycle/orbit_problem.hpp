@@ -17,8 +17,8 @@ struct OrbitOptions {
 };
 
 /// Unknowns: this rank's rows of the scaled states X_1..X_m at the nodes of its group's intervals, and behind them on
-/// the last rank the border, [period,] parameter. The start of an interval is its left neighbour's X_m, and x(0) = x(1).
-/// The linearised equations are
+/// the last rank the border, [period,] parameter. The start of an interval is its left neighbour's X_m, and x(0) =
+/// x(1). The linearised equations are
 ///
 ///     A0_i x_i + A_i X_i + columns_i d = y_i of interval i,     sum rows_i X_i + corner d = y_c.
 ///

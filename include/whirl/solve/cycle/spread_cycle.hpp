@@ -115,6 +115,7 @@ private:
   /// state := that after interval i, added += rows X.
   void carry(Eigen::Index i, Eigen::MatrixXd& state, const Eigen::MatrixXd* rhs, bool rest,
              Eigen::MatrixXd& added) const;
+  [[nodiscard]] Path driven(const Eigen::VectorXd& start, const Eigen::MatrixXd* y, Eigen::VectorXd& end) const;
   Eigen::MatrixXd monodromy_times(const Eigen::MatrixXd& v, Eigen::MatrixXd& added) const;
   [[nodiscard]] Eigen::MatrixXd complement(const Eigen::MatrixXd& v) const;
   Eigen::MatrixXd picard(const Eigen::MatrixXd& right, Eigen::MatrixXd& image, Eigen::MatrixXd& added) const;
