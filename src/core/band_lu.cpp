@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "whirl/core/index.hpp"
+
 namespace whirl::core {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -53,6 +55,19 @@ Eight spread(const Eight& x, int lane) {
 double sum(const Eight& x) {
   return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
 }
+// Zeros, on the stack if they are few: many small bands are solved.
+class Room {
+public:
+  explicit Room(std::ptrdiff_t size) : many_(size > few ? core::at(size) : 0, 0.0) {
+    if (size <= few) std::fill_n(few_.begin(), size, 0.0);
+  }
+  double* data() { return many_.empty() ? few_.data() : many_.data(); }
+
+private:
+  static constexpr std::ptrdiff_t few = 512;
+  std::array<double, few> few_;
+  std::vector<double> many_;
+};
 constexpr Eight lane_number = {0, 1, 2, 3, 4, 5, 6, 7};
 
 }  // namespace
@@ -191,6 +206,11 @@ void BandLu::eliminate(const Source& of) {
 }
 
 void BandLu::eliminate(const Source& of) {
+  if (!of.a) {
+    regular_ = true;
+    exchanged_ = false;
+    scale_.setOnes();
+  }
   switch (height_ / lanes) {
     case 1:
       return eliminate<1>(of);
@@ -212,7 +232,7 @@ void BandLu::substitute(const double* b, double* to) const {
   const int end = whole(size_, lanes), h = height_;
   // Room for the rows of columns that are none of the matrix.
   const std::ptrdiff_t apart = end + 2 * h;
-  std::vector<double> padded(static_cast<std::size_t>(Sides * apart), 0.0);
+  Room padded(Sides * apart);
   std::array<double*, Sides> x;
   for (std::size_t s = 0; s < Sides; ++s) {
     x[s] = padded.data() + h + static_cast<std::ptrdiff_t>(s) * apart;
@@ -275,7 +295,7 @@ void BandLu::substitute_transposed(const double* b, double* to) const {
     for (std::size_t s = 0; s < Sides; ++s) out[s] = first + static_cast<std::ptrdiff_t>(s) * stride;
     return out;
   };
-  std::vector<double> padded(static_cast<std::size_t>(Sides * (end + 2 * h)), 0.0);
+  Room padded(Sides * (end + 2 * h));
   const auto x = columns(padded.data() + h, end + 2 * h);
   for (std::size_t s = 0; s < Sides; ++s)
     for (int k = 0; k < size_; ++k) x[s][k] = units_(k) * b[static_cast<std::ptrdiff_t>(s) * size_ + k];

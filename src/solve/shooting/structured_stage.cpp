@@ -59,7 +59,6 @@ public:
 
 private:
   struct Part {
-    Eigen::SparseMatrix<double> matrix;  // B, with all entries of its band
     std::optional<core::BandLu> band;
     MatrixXd response;  // B^-1 U: of the seen inputs, then of the last states [interior x ...]
     MatrixXd forces;    // own P^T [interior x forces]
@@ -104,35 +103,42 @@ void StructuredStage::factorise_bands(double own) {
     part.inputs.conservativeResize(seen, n);
     part.response.conservativeResize(inner, seen + reach);
     part.ends.setZero(inner, reach);
-    if (!part.band) {
-      part.matrix.resize(inner, inner);
-      part.matrix.reserve(Eigen::VectorXi::Constant(inner, static_cast<int>(2 * reach + 1)));
-      for (Index j = 0; j < inner; ++j)
-        for (Index k = std::max<Index>(0, j - reach); k < std::min(inner, j + reach + 1); ++k)
-          part.matrix.insert(k, j) = 0;
-      part.matrix.makeCompressed();
-      part.band.emplace(part.matrix, VectorXd(), digits_lost);
-    }
-    const auto entry = [&](Index k, Index j) -> double& {
-      const int first = part.matrix.outerIndexPtr()[j];
-      return part.matrix.valuePtr()[first + k - part.matrix.innerIndexPtr()[first]];
+    // -own A at (k, j), in a ring.
+    const auto each = [&](const auto& add) {
+      for (std::size_t d = 0; d < film.shifts.size(); ++d)
+        for (Index k = 0; k < count; ++k)
+          add(k, (k + film.shifts[d] + count) % count,
+              -own * a_(film.diagonals + static_cast<Index>(d) * film.stride + k));
     };
-    part.matrix.coeffs().setZero();
-    for (Index k = 0; k < inner; ++k) entry(k, k) = 1;
-    for (std::size_t d = 0; d < film.shifts.size(); ++d)
-      for (Index k = 0; k < count; ++k) {
-        const double value = -own * a_(film.diagonals + static_cast<Index>(d) * film.stride + k);
-        const Index j = (k + film.shifts[d] + count) % count;
-        if (k < inner && j < inner)
-          entry(k, j) += value;
-        else if (k < inner)
-          part.response(k, seen + j - inner) += value;
-        else if (j < inner)
-          part.ends(j, k - inner) -= value;
-        else
-          v(end + k - inner, end + j - inner) += value;
+    const bool first = !part.band;
+    if (first) part.band.emplace(static_cast<int>(inner), static_cast<int>(reach), VectorXd(), digits_lost);
+    if (first || part.band->exchanged()) part.band->clear();
+    VectorXd image = VectorXd::Ones(inner);  // of ones
+    for (Index j = 0; j < inner; ++j)
+      for (Index k = std::max<Index>(0, j - reach); k < std::min(inner, j + reach + 1); ++k)
+        part.band->entry(static_cast<int>(k), static_cast<int>(j)) = k == j ? 1 : 0;
+    each([&](Index k, Index j, double value) {
+      if (k < inner && j < inner) {
+        part.band->entry(static_cast<int>(k), static_cast<int>(j)) += value;
+        image(k) += value;
+      } else if (k < inner) {
+        part.response(k, seen + j - inner) += value;
+      } else if (j < inner) {
+        part.ends(j, k - inner) -= value;
+      } else {
+        v(end + k - inner, end + j - inner) += value;
       }
-    (void)part.band->factor(part.matrix);
+    });
+    part.band->factor();
+    if (!((part.band->solve(image) - VectorXd::Ones(inner)).norm() <= digits_lost)) {
+      Eigen::SparseMatrix<double> matrix(inner, inner);
+      matrix.setIdentity();
+      each([&](Index k, Index j, double value) {
+        if (k < inner && j < inner) matrix.coeffRef(k, j) += value;
+      });
+      matrix.makeCompressed();
+      (void)part.band->factor(matrix);
+    }
     part.band->solve(false, part.response.data(), part.response.data(), part.response.cols());
     part.forces.resize(inner, film.at.forces);
     for (Index e = 0; e < film.at.forces; ++e) {
