@@ -158,6 +158,16 @@ Product product_of(PeriodicProblem& problem) {
   return [&problem](const VectorXd& x) { return VectorXd(problem.times(x)); };
 }
 
+// sum a_e M^e where M is at hand.
+MatrixXd whole_polynomial(const MatrixXd& m, const std::vector<double>& polynomial) {
+  MatrixXd a = polynomial[0] * MatrixXd::Identity(m.rows(), m.cols()), power = m;
+  for (std::size_t e = 1; e < polynomial.size(); ++e) {
+    a += polynomial[e] * power;
+    if (e + 1 < polynomial.size()) power *= m;
+  }
+  return a;
+}
+
 // V and U of A ~ a_0 I + U V^T.
 void known_part(PeriodicProblem& problem, const std::vector<double>& polynomial, MatrixXd& basis, MatrixXd& image) {
   MatrixXd power;
@@ -171,9 +181,27 @@ void known_part(PeriodicProblem& problem, const std::vector<double>& polynomial,
   }
 }
 
+// LU of [A b; c^T 0] where M is at hand. The border in the size of A, so that neither disturbs the pivots of the other.
+core::DenseLu<double> bordered_lu(const MatrixXd& a, const MatrixXd& b, const MatrixXd& c, double& size) {
+  const Index n = a.rows(), k = b.cols();
+  size = std::max(a.norm() / std::sqrt(static_cast<double>(n)), 1e-300);
+  MatrixXd whole(n + k, n + k);
+  whole << a, size * b, size * c.transpose(), MatrixXd::Zero(k, k);
+  return core::DenseLu<double>(whole);
+}
+
+void share(const PeriodicProblem& problem, MatrixXd& values) {
+  core::share(problem.comm(), values.data(), static_cast<std::size_t>(values.size()));
+}
+
 }  // namespace
 
 MatrixXd solve_polynomial(PeriodicProblem& problem, const std::vector<double>& polynomial, const MatrixXd& rhs) {
+  if (const auto m = problem.matrix_of_period()) {
+    MatrixXd x = core::DenseLu<double>(whole_polynomial(*m, polynomial)).solve(rhs);
+    share(problem, x);
+    return x;
+  }
   MatrixXd basis, image;
   known_part(problem, polynomial, basis, image);
   const MatrixXd none(rhs.rows(), 0);
@@ -182,12 +210,22 @@ MatrixXd solve_polynomial(PeriodicProblem& problem, const std::vector<double>& p
 
 MatrixXd share_of_null_space(PeriodicProblem& problem, const std::vector<double>& polynomial, const MatrixXd& basis,
                              const MatrixXd& rhs) {
-  const Index k = basis.cols();
+  const Index n = rhs.rows(), k = basis.cols();
+  MatrixXd g;
+  if (const auto m = problem.matrix_of_period()) {
+    double size = 1;
+    MatrixXd right = MatrixXd::Zero(n + k, rhs.cols());
+    right.topRows(n) = rhs;
+    g = bordered_lu(whole_polynomial(*m, polynomial), basis, basis, size).solve(right).bottomRows(k);
+    g *= size;
+    share(problem, g);
+    return g;
+  }
   MatrixXd known, image;
   known_part(problem, polynomial, known, image);
   const Matrix s{problem, polynomial, product_of(problem), basis, basis, known, image};
   const MatrixXd answer = iterate(s, s.joined(rhs, MatrixXd::Zero(k, rhs.cols())));
-  MatrixXd g(k, rhs.cols());
+  g.resize(k, rhs.cols());
   for (Index j = 0; j < rhs.cols(); ++j) g.col(j) = s.border_of(answer.col(j));
   return g;
 }
@@ -197,8 +235,10 @@ BorderedMonodromy::BorderedMonodromy(CycleProblem& problem, Index k)
   // Generic vectors, or combinations of the dominant subspace where there is one: film states would leave generic
   // vectors nearly orthogonal to null vectors, which are smooth.
   MatrixXd known, image;
-  (void)problem.multipliers();  // leaves a dominant subspace
-  problem.dominant(known, image);
+  if (!problem.composition().has_monodromy()) {
+    (void)problem.multipliers();  // leaves a dominant subspace
+    problem.dominant(known, image);
+  }
   const bool few = known.cols() < k;
   const Index p = few ? b_.rows() : known.cols();
   MatrixXd left(p, k), right(p, k);
@@ -216,10 +256,23 @@ BorderedMonodromy::BorderedMonodromy(CycleProblem& problem, Index k)
 void BorderedMonodromy::solve(const std::vector<double>& polynomial) {
   polynomial_ = polynomial;
   w_.resize(0, 0);
+  const Index n = b_.rows(), k = b_.cols();
+  if (const auto m = problem_.matrix_of_period()) {
+    double size = 1;
+    const core::DenseLu<double> lu = bordered_lu(whole_polynomial(*m, polynomial), b_, c_, size);
+    MatrixXd unit = MatrixXd::Zero(n + k, k);
+    unit.bottomRows(k) = size * MatrixXd::Identity(k, k);
+    MatrixXd right = lu.solve(unit), adjoint = lu.solve_transposed(unit);
+    for (MatrixXd* part : {&right, &adjoint}) share(problem_, *part);
+    v = right.topRows(n);
+    g = size * right.bottomRows(k);
+    w_ = adjoint.topRows(n);
+    return;
+  }
   known_part(problem_, polynomial, basis_, image_);
   const MatrixXd right = null_vectors(false);
-  v = right.topRows(b_.rows());
-  g = right.bottomRows(b_.cols());
+  v = right.topRows(n);
+  g = right.bottomRows(k);
 }
 
 const MatrixXd& BorderedMonodromy::left() {

@@ -11,13 +11,11 @@ namespace whirl::solve {
 /// [A b; c^T 0][v; g] = [0; I] and its transpose with w for A = a_0 I + a_1 M + a_2 M^2 + ... that loses rank by the
 /// number k of columns of b and c [n x k]: v, w [n x k], g [k x k], the same on every rank.
 ///
-/// By GMRES on products with M, preconditioned by the answer for M ~ (M V) V^T with the subspace V of the dominant
-/// multipliers: A ~ a_0 I + U V^T, U = M V (a_1 I + a_2 V^T M V + ...), and z = V^T v,
+/// By LU where M is at hand. Else by GMRES on products with M, preconditioned by the answer for M ~ (M V) V^T with the
+/// subspace V of the dominant multipliers: A ~ a_0 I + U V^T, U = M V (a_1 I + a_2 V^T M V + ...), and z = V^T v,
 ///
 ///     [ a_0 I + V^T U   V^T b ] [ z ]   [ V^T r         ]
 ///     [ c^T U           c^T b ] [ g ] = [ c^T r - a_0 s ]      v = (r - U z - b g)/a_0
-///
-/// Where M is at hand V is the identity, and the first turn gives the answer.
 ///
 /// Collective on the problem's communicator. Where each rank has whole states the iteration is rank 0's: it alone
 /// decides, the others take part in the products. Where ranks share states each group of them iterates.

@@ -26,12 +26,10 @@ public:
   std::vector<std::complex<double>> multipliers() override { return spectral::eigenvalues(run_->comm, monodromy_); }
   VectorXd critical_start(double mu) override;
   MatrixXd monodromy() override { return monodromy_; }
+  bool has_monodromy() const override { return true; }
   MatrixXd times(const MatrixXd& v) override { return monodromy_ * v; }
   MatrixXd times_transposed(const MatrixXd& w) override { return monodromy_.transpose() * w; }
-  void dominant(MatrixXd& v, MatrixXd& image) override {
-    v.setIdentity(run_->n, run_->n);
-    image = monodromy_;
-  }
+  void dominant(MatrixXd& v, MatrixXd& image) override { v = image = MatrixXd(run_->n, 0); }
 
 private:
   const Run* run_ = nullptr;

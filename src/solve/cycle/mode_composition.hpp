@@ -33,6 +33,7 @@ public:
   std::vector<std::complex<double>> multipliers() override { return sweeps().multipliers(); }
   Eigen::VectorXd critical_start(double mu) override { return sweeps().critical_start(mu); }
   Eigen::MatrixXd monodromy() override { return sweeps().monodromy(); }
+  bool has_monodromy() const override { return false; }
   Eigen::MatrixXd times(const Eigen::MatrixXd& v) override { return sweeps().times(v); }
   Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) override { return sweeps().times_transposed(w); }
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { sweeps().dominant(v, image); }

@@ -29,6 +29,7 @@ public:
   std::vector<std::complex<double>> multipliers() override;
   Eigen::VectorXd critical_start(double mu) override;
   Eigen::MatrixXd monodromy() override { return times(Eigen::MatrixXd::Identity(run_->n, run_->n)); }
+  bool has_monodromy() const override { return false; }
   Eigen::MatrixXd times(const Eigen::MatrixXd& v) override;
   Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) override;
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override;

@@ -78,13 +78,14 @@ public:
   [[nodiscard]] virtual std::vector<std::complex<double>> multipliers() = 0;
   /// The start v [n], of norm one, of the motion of the real multiplier nearest to `mu`.
   [[nodiscard]] virtual Eigen::VectorXd critical_start(double mu) = 0;
-  /// M [n x n], on every rank.
+  /// M [n x n], on every rank, and true if it is at hand.
   [[nodiscard]] virtual Eigen::MatrixXd monodromy() = 0;
+  [[nodiscard]] virtual bool has_monodromy() const = 0;
   /// M v and M^T w [n x k], on every rank.
   [[nodiscard]] virtual Eigen::MatrixXd times(const Eigen::MatrixXd& v) = 0;
   [[nodiscard]] virtual Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) = 0;
   /// V [n x p] and M V on every rank: an orthonormal basis that once belonged to the largest multipliers, so that
-  /// M ~ (M V) V^T. Empty if none is known, and the identity where M is at hand.
+  /// M ~ (M V) V^T. Empty if none is known.
   virtual void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) = 0;
   /// What V is known by, on every rank, for another composition of as many states; to be taken before compose().
   [[nodiscard]] virtual std::vector<double> warm_start() { return {}; }

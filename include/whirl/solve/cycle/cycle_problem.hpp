@@ -70,6 +70,9 @@ public:
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   [[nodiscard]] Eigen::VectorXcd multiplier_vector(std::complex<double> mu) override;
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& v) override { return composition_->times(v); }
+  [[nodiscard]] std::optional<Eigen::MatrixXd> matrix_of_period() override {
+    return composition_->has_monodromy() ? std::optional(composition_->monodromy()) : std::nullopt;
+  }
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { composition_->dominant(v, image); }
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
   /// Large with own states of films, where nothing else forms it. Collective.

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <complex>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "whirl/solve/cycle/cycle.hpp"
@@ -66,8 +67,10 @@ public:
   [[nodiscard]] virtual MPI_Comm rows() const = 0;
   /// M v [n_local x k].
   [[nodiscard]] virtual Eigen::MatrixXd times(const Eigen::MatrixXd& v) = 0;
+  /// M on every rank, where it is at hand and each rank has all rows.
+  [[nodiscard]] virtual std::optional<Eigen::MatrixXd> matrix_of_period() = 0;
   /// V [n_local x p] and M V: an orthonormal basis that once belonged to the largest multipliers, so that
-  /// M ~ (M V) V^T. Empty if none is known, and the identity where M is at hand.
+  /// M ~ (M V) V^T. Empty if none is known.
   virtual void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) = 0;
   /// The linearised motion from the scaled start v, not closed to a period: its end is M v.
   [[nodiscard]] virtual Path forward(const Eigen::VectorXd& v) const = 0;

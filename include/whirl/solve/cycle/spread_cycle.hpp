@@ -65,6 +65,7 @@ public:
   /// Empty unless the subspace has it.
   [[nodiscard]] Eigen::VectorXcd multiplier_vector(std::complex<double> mu) override;
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& v) override;
+  [[nodiscard]] std::optional<Eigen::MatrixXd> matrix_of_period() override { return {}; }
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { v = basis_, image = image_; }
   [[nodiscard]] Path forward(const Eigen::VectorXd& v) const override;
   [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const override;
