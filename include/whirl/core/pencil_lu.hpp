@@ -30,8 +30,8 @@ public:
   /// This rank has `rows` rows with entries of a and b at these places; entries of one place add up. MUMPS reads PETSc
   /// options with `prefix` if there is one.
   PencilLu(MPI_Comm comm, PetscInt rows, std::vector<Place> a, std::vector<Place> b, const char* prefix = nullptr);
-  /// Factorises, with the entries of a and b in the order of their places. On one rank factors stay that are those of
-  /// the same values, to rounding (1e-12 of each).
+  /// Factorises, with the entries of a and b in the order of their places. On one rank the factors are kept if all
+  /// values are the same, to rounding (1e-12 of each).
   void set(std::span<const double> a, std::span<const double> b, double alpha, Scalar sigma);
   /// x = A^-1 r, or A^-* r (conjugate transpose), of this rank's [rows x columns]. Not finite if A is singular.
   void solve(bool adjoint, std::span<const Scalar> r, std::span<Scalar> x);

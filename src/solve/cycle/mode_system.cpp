@@ -57,7 +57,7 @@ MatrixXd ModeComposition::changes(const MatrixXd& v, bool transposed) const {
   return out;
 }
 
-// Transposed, real and imaginary parts of a transfer function stand as those of its conjugate.
+// The transpose takes the conjugate of each transfer function.
 MatrixXd ModeComposition::receptance(const MatrixXd& v, bool transposed) const {
   const Index r = run_->thin->blocks->b.cols(), w = transfer_.cols() / r, lanes = modes_.lanes;
   const MatrixXd &to = transposed ? modes_.seen : modes_.into, &from = transposed ? modes_.into : modes_.seen,
