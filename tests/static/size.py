@@ -28,7 +28,7 @@ ALGEBRA = """
 band_lu line_solver ring_preconditioner gas_inverse lent_lu film_matrix stencil pack
 direct_inverse film_inverse
 part_factors frequency_hub frequency_inverse frequency_linearise frequency_part frequency_resolvent frequency_transfer
-port_elimination port_krylov port_layout port_maker port_matrix matrix_rows thin local_part stored spread_point rational_fit
+anchored_hub hub_lu port_elimination port_krylov port_layout port_maker port_matrix matrix_rows thin local_part stored spread_point rational_fit
 scaled_point thin_blocks linear_part thin_interval spread_interval interval own_block own_blocks own_shape small_blocks pencil
 time_modes mode_composition mode_system dense_composition sweep_composition sweep_system composition cycle_matrix orbit_problem
 film_march dominant_subspace spread_subspace

@@ -118,6 +118,56 @@ TEST(Tilt, AFreeShaftOnOneFilmIsSolvedAtRest) {
   EXPECT_LE((shaft * rigid).norm(), 1e-9 * shaft.norm());
 }
 
+// Machines whose films have no states are solved on their ports, by one factorisation at several speeds and places:
+// that is the inverse of the matrix entry by entry, of a shaft with a dense inverse and of one with sparse factors.
+TEST(Tilt, EquilibriaOnPortsSolveTheAssembledMatrix) {
+  system::Train slender = overhung(true);
+  const auto cut = [](std::vector<rotor::Segment>& segments) {
+    std::vector<rotor::Segment> out;
+    for (rotor::Segment s : segments) {
+      s.length /= 8;
+      out.insert(out.end(), 8, s);
+    }
+    segments = out;
+  };
+  cut(slender.rotor.segments);
+  const auto move = [](auto& all) {
+    for (auto& one : all) one.node = 8 * (one.node - 1) + 1;
+  };
+  move(slender.supports);
+  move(slender.rotor.discs);
+  move(slender.unbalance);
+  for (const system::Train& t : {overhung(true), slender}) {
+    system::RotorSystem s(PETSC_COMM_SELF, t, speed);
+    core::Vector x = s.guess();
+    solve::EquilibriumProblem problem(s, speed, 1);
+    core::Vector u = problem.make_unknown(), row = core::duplicate(u.get()), right = core::duplicate(u.get()),
+                 answer = core::duplicate(u.get());
+    core::check(VecSet(row.get(), 0.0));
+    disturb(row.get(), 1);
+    disturb(right.get(), 1e-3);
+    const VectorXd y = test::dense(right.get());
+    for (const double at : {speed, 1.2 * speed, 0.7 * speed}) {
+      disturb(x.get(), 1e-6);
+      problem.from_state(x.get(), at, u.get());
+      problem.linearise(u.get(), row.get());
+      // Rounding grows with the stiffness of short elements.
+      const MatrixXd a = test::dense(problem.matrix());
+      const auto close = [&](const VectorXd& b, const VectorXd& c, double size) {
+        EXPECT_LE((b - c).norm(), 1e-10 * c.norm() + 1e-14 * a.norm() * size) << s.size() << " states at " << at;
+      };
+      problem.multiply(right.get(), answer.get());
+      close(test::dense(answer.get()), a * y, y.norm());
+      problem.solve(right.get(), answer.get());
+      const VectorXd forth = test::dense(answer.get());
+      close(a * forth, y, forth.norm());
+      problem.solve_transposed(right.get(), answer.get());
+      const VectorXd back = test::dense(answer.get());
+      close(a.transpose() * back, y, back.norm());
+    }
+  }
+}
+
 // The blocks that structured solvers see give F and J of the matrices, with films with and without states.
 TEST(Tilt, BlocksAreTheSameEquations) {
   for (const bool states : {false, true}) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "solve/newton/anchored_hub.hpp"
 #include "solve/newton/port_krylov.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
@@ -43,6 +44,14 @@ void EquilibriumProblem::renew(double parameter_scale) {
   check(VecCopy(residual_scale_.get(), row_scale_.get()));
   check(VecReciprocal(row_scale_.get()));
   if (rows_) set_scales();
+  if (problem::BlockStructure* const structure = system_.structure(); structure && structure->own().empty()) {
+    point_ = std::make_unique<problem::ScaledPoint>(system_, structure, true);
+    refreshed_at_ = system_.parameter();
+    if (!hub_on_ports_) hub_on_ports_ = std::make_unique<AnchoredHub>();
+    scaled_.resize(point_->size());
+    still_.setZero(point_->size());
+    value_.resize(point_->size());
+  }
   if (!given_up_) return;
   exact_.reset();
   given_up_ = false;
@@ -85,10 +94,26 @@ void EquilibriumProblem::prepare(Vec u) {
   const double parameter = last_entry(comm(), u) * parameter_scale_;
   core::agree(comm(), [&] { system_.set_parameter(parameter); });
   to_state(u, x_.get());
+  if (!point_) return;
+  if (parameter != refreshed_at_) {
+    if (system_.parameter_is_speed())
+      point_->refresh_speed();
+    else
+      point_->refresh();
+    refreshed_at_ = parameter;
+  }
+  const core::ReadArray ua(u);
+  std::copy_n(ua.data(), scaled_.size(), scaled_.data());
 }
 
 void EquilibriumProblem::residual(Vec u, Vec r) {
   prepare(u);
+  if (point_) {
+    const core::WriteArray ra(r);
+    point_->residual(0, scaled_, still_, value_);
+    std::copy_n(value_.data(), value_.size(), ra.data());
+    return;
+  }
   system_.residual(0, x_.get(), rest_.get(), f_.get());
   const core::ReadArray fa(f_.get()), s(residual_scale_.get());
   const core::WriteArray ra(r);
@@ -97,7 +122,8 @@ void EquilibriumProblem::residual(Vec u, Vec r) {
 
 // Filled when it is asked for, and from then on with every linearisation.
 Mat EquilibriumProblem::matrix() {
-  if (bordered_ || !blocks_) return bordered_.get();
+  if (bordered_ || !row_) return bordered_.get();
+  if (on_ports_) assemble();
   PetscInt local = 0;
   check(VecGetLocalSize(rows_.get(), &local));
   bordered_ = entries_.matrix(comm(), local);
@@ -160,6 +186,26 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
     hub_ = problem::hub_numbers(system_);
   }
   check(VecCopy(row, row_.get()));
+  on_ports_ = point_ && linearise_on_ports();
+  if (!on_ports_ || bordered_) assemble();
+}
+
+bool EquilibriumProblem::linearise_on_ports() {
+  point_->residual(0, scaled_, still_, value_, at_);
+  point_->parameter_derivative(0, at_, value_);
+  const core::ReadArray row(row_.get());
+  return hub_on_ports_->set(point_->thin_blocks(), at_.films.d_inputs, value_ * parameter_scale_,
+                            Eigen::Map<const Eigen::VectorXd>(row.data(), row.size()));
+}
+
+void EquilibriumProblem::answer(Eigen::VectorXd (AnchoredHub::*by)(const Eigen::VectorXd&) const, Vec from,
+                                Vec to) const {
+  const core::ReadArray a(from);
+  const Eigen::VectorXd found = (*hub_on_ports_.*by)(Eigen::Map<const Eigen::VectorXd>(a.data(), a.size()));
+  std::copy_n(found.data(), found.size(), core::WriteArray(to).data());
+}
+
+void EquilibriumProblem::assemble() {
   system_.parameter_derivative(0, x_.get(), rest_.get(), f_.get());
   list();
   if (!blocks_) {
@@ -225,6 +271,7 @@ void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
 
 // A singular matrix gives infinite answers, as those of MUMPS alone, which Newton's method and GMRES recognise.
 void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
+  if (on_ports_) return answer(transposed ? &AnchoredHub::solve_transposed : &AnchoredHub::solve, rhs, x);
   try {
     solve_by_parts(transposed, rhs, x);
   } catch (const core::NotConverged&) {
@@ -233,6 +280,7 @@ void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
 }
 
 void EquilibriumProblem::multiply(Vec v, Vec y) {
+  if (on_ports_) return answer(&AnchoredHub::multiply, v, y);
   const core::ReadArray va(v);
   const core::WriteArray ya(y);
   blocks_->multiply(va.data(), ya.data());

@@ -1,12 +1,11 @@
 // Stages of a machine that tells its structure, by factors that serve many of them: no matrix of all states is made.
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <vector>
 
-#include "whirl/core/dense_lu.hpp"
+#include "solve/newton/hub_lu.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/core/pivoted_lu.hpp"
 #include "whirl/core/sparse_lu.hpp"
 #include "whirl/solve/shooting/runge_kutta.hpp"
 
@@ -22,18 +21,6 @@ constexpr std::size_t most_kept = 6;
 constexpr double slow_refinement = 0.3;  // a refinement that converges slower pays for new factors
 constexpr int most_refinements = 12;
 constexpr double thin_tolerance = 1e-6;
-// A dense inverse wins up to here: one product without a dependence of one row on the next. It is used with refinement
-// or in Newton's method only.
-constexpr Index dense_until = 160;
-
-// Whether `inverse` of `m` is one beyond rounding. The largest entry of diag(|M| |M^-1|), a condition number that no
-// scale of rows or columns changes, tells how much rounding grows: without bound where columns depend on each other,
-// which elimination turns into a zero or into what rounding leaves of one.
-bool is_regular(const MatrixXd& m, const MatrixXd& inverse) {
-  if (!inverse.allFinite()) return false;
-  constexpr double most = 1e-2 / std::numeric_limits<double>::epsilon();
-  return m.cwiseAbs().cwiseProduct(inverse.transpose().cwiseAbs()).rowwise().sum().maxCoeff() < most;
-}
 
 bool near(double a, double b, double ratio) {
   return std::abs(a - b) <= ratio * std::abs(b);
@@ -134,9 +121,7 @@ private:
   };
   struct Factors {
     StepOf of;
-    MatrixXd inverse;  // of L1 + own L0 if that is small, or
-    std::unique_ptr<core::PivotedLu<double>> sparse;
-    MatrixXd lead, seen;  // its inverse times B [n x r], and C times that [w x r]
+    HubLu hub;  // of L1 + own L0
     std::vector<std::unique_ptr<Film>> films;
     long used = 0;
   };
@@ -221,19 +206,8 @@ ThinStage::Factors& ThinStage::factorise() {
   if (!made) made = std::make_unique<Factors>();
   made->of = here_;
   const auto& blocks = point_.thin_blocks();
-  const problem::SparseBlock m = blocks.l1 + here_.own * blocks.l0;
-  const MatrixXd b = blocks.b;
-  if (m.rows() <= dense_until) {
-    const MatrixXd whole(m);
-    made->inverse = core::DenseLu<double>(whole).inverse();
-    if (!is_regular(whole, made->inverse)) throw core::NotConverged("the matrix of the rotor is singular");
-    made->lead.noalias() = made->inverse * b;
-  } else {
-    if (!made->sparse) made->sparse = std::make_unique<core::PivotedLu<double>>();
-    if (!made->sparse->compute(m)) throw core::NotConverged("the matrix of the rotor is singular");
-    made->lead = made->sparse->solve(b);
-  }
-  made->seen = blocks.c * made->lead;
+  if (!made->hub.factorise(blocks.l1 + here_.own * blocks.l0, blocks.b, blocks.c))
+    throw core::NotConverged("the matrix of the rotor is singular");
   made->films.resize(structure_.own().size());
   for (std::size_t i = 0; i < made->films.size(); ++i) {
     if (!made->films[i]) made->films[i] = std::make_unique<Film>();
@@ -253,7 +227,7 @@ void ThinStage::place(Factors* f) {
     by_input_.block(own.first_force, own.first_input, own.forces, own.inputs) -=
         now_->films[i]->forces * now_->films[i]->by_input;
   }
-  small_matrix_.noalias() = -now_->of.own * by_input_ * now_->seen;
+  small_matrix_.noalias() = -now_->of.own * by_input_ * now_->hub.seen();
   small_matrix_.diagonal().array() += 1;
   small_.compute(small_matrix_);
   placed_ = true;
@@ -275,16 +249,13 @@ void ThinStage::apply(const VectorXd& y, Ref<VectorXd> x) {
     }
     rhs_ += blocks.b * forces_;
   }
-  if (f.sparse)
-    x.head(n) = f.sparse->solve(rhs_);
-  else
-    x.head(n).noalias() = f.inverse * rhs_;
+  f.hub.solve(rhs_, x.head(n));
   inputs_.noalias() = blocks.c * x.head(n);
   forces_.noalias() = by_input_ * inputs_;
   by_force_ = small_.solve(forces_);
-  x.head(n).noalias() += f.of.own * (f.lead * by_force_);
+  x.head(n).noalias() += f.of.own * (f.hub.lead() * by_force_);
   if (f.films.empty()) return;
-  inputs_.noalias() += f.of.own * (f.seen * by_force_);
+  inputs_.noalias() += f.of.own * (f.hub.seen() * by_force_);
   for (std::size_t i = 0; i < f.films.size(); ++i) {
     const problem::OwnStates& own = structure_.own()[i];
     x.segment(n + own.first, own.count).noalias() -=

@@ -4,23 +4,26 @@
 #include <memory>
 #include <string>
 
-#include "whirl/problem/system.hpp"
+#include "whirl/problem/scaled_point.hpp"
 #include "whirl/solve/newton/adjoint.hpp"
 #include "whirl/solve/newton/extended_problem.hpp"
 #include "whirl/solve/newton/newton.hpp"
 
 namespace whirl::solve {
 
+class AnchoredHub;
 class PortElimination;
 class PortKrylov;
 class PortMatrix;
 
 /// R(u) = F(angle 0, x, 0; p), without forcing of order one in the angle: for balanced machines and static positions.
 ///
-/// The matrix is [dF/dx dF/dp; row]. Films with own states are eliminated on their ports (`port_elimination`), with the
-/// border part of what is left, by their own preconditioners where all have one: from blocks that are spread like the
-/// films, and no matrix is assembled unless it is asked for. A machine without films is all hub.
-/// All are regular at folds. Where iterations on approximate inverses do not come to the tolerance
+/// The matrix is [dF/dx dF/dp; row]. A machine on one rank that tells its structure, none of whose films has states, is
+/// solved on its ports by factors that many points share (`anchored_hub`). Else films with own states are eliminated on
+/// their ports (`port_elimination`), with the border part of what is left, by their own preconditioners where all have
+/// one: from blocks that are spread like the films, and no matrix is assembled unless it is asked for. A machine
+/// without films is all hub. All are regular at folds. Where iterations on approximate inverses do not come to the
+/// tolerance
 /// (-equilibrium_ksp_rtol, 1e-12; -equilibrium_ksp_max_it, 100), and for transposes, such films are factorised if the
 /// machine has at most -parts_whole_states (1,000,000). Otherwise solve() throws core::DomainError with the reason,
 /// which ends Newton's method without convergence, and solve_transposed() core::NotConverged. The Krylov method around
@@ -60,6 +63,12 @@ public:
 
 private:
   void prepare(Vec u);
+  /// dF/dx at x_ on the ports; false if it has to be eliminated otherwise.
+  [[nodiscard]] bool linearise_on_ports();
+  /// The matrix at x_ in blocks, and as entries where these are asked for.
+  void assemble();
+  /// to = the answer of the ports to `from`.
+  void answer(Eigen::VectorXd (AnchoredHub::*by)(const Eigen::VectorXd&) const, Vec from, Vec to) const;
   /// The entries of the bordered matrix at x_, not scaled: dF/dp is f_.
   void list();
   void fill_bordered();
@@ -71,6 +80,12 @@ private:
   problem::System& system_;
   double parameter_scale_;
   core::Vector weights_, state_scale_, residual_scale_, row_scale_, x_, rest_, f_;
+  std::unique_ptr<problem::ScaledPoint> point_;  // of a machine that is solved on its ports,
+  std::unique_ptr<AnchoredHub> hub_on_ports_;    // how,
+  bool on_ports_ = false;                        // whether the present matrix is,
+  double refreshed_at_ = 0;                      // the parameter that the point knows,
+  problem::PointState at_;                       // the films there,
+  Eigen::VectorXd scaled_, still_, value_;       // and work space
   core::Matrix jacobian_, bordered_;
   problem::Entries entries_;                            // of the bordered matrix,
   std::unique_ptr<PortMatrix> blocks_;                  // these in blocks, scaled by

@@ -1,0 +1,54 @@
+#pragma once
+// The bordered Jacobian of an equilibrium on the ports of a machine, around factors that many points share.
+
+#include <Eigen/Core>
+
+#include "solve/newton/hub_lu.hpp"
+#include "whirl/core/dense_lu.hpp"
+#include "whirl/problem/thin_blocks.hpp"
+
+namespace whirl::solve {
+
+/// With the forces of the films on a machine whose films have no states, B f(C x) and D = df/dw,
+///
+///     [ L0 - B D C   column ] [ x ]   [ y   ]
+///     [ row          corner ] [ p ] = [ y_p ]
+///
+/// L0 alone may be that of a free shaft. So it is factorised with D0, the tangents where it was first asked for: M = L0
+/// - B D0 C is regular as equilibria are. What D differs by enters at the ports,
+///
+///     x = M^-1 y + M^-1 B f - M^-1 column p,     f = (D - D0) C x
+///
+/// and is solved with the border as a matrix of size r + 1 (Woodbury), which is regular at folds too. M serves at all
+/// points with the same L0. Columns of rates may differ, so that a shaft has one M at all speeds unless damping turns
+/// with it: such columns meet the kinematic rows alone, and one step of refinement puts them right.
+class AnchoredHub {
+public:
+  /// D [r x w], column [n], row [n + 1] with the corner; `blocks` outlive the solves. False if M is singular, and then
+  /// nothing can be solved.
+  [[nodiscard]] bool set(const problem::ThinBlocks& blocks, const Eigen::MatrixXd& tangents, Eigen::VectorXd column,
+                         Eigen::VectorXd row);
+  /// Of [n + 1]: products with the matrix above, with its inverse, and with the inverse of its transpose.
+  [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& y) const;
+  [[nodiscard]] Eigen::VectorXd solve_transposed(const Eigen::VectorXd& y) const;
+
+private:
+  [[nodiscard]] bool factorise(const Eigen::MatrixXd& anchor);
+  /// Whether the factors serve for the present L0.
+  [[nodiscard]] bool serves();
+  [[nodiscard]] Eigen::VectorXd multiply_transposed(const Eigen::VectorXd& x) const;
+  [[nodiscard]] Eigen::VectorXd apply(const Eigen::VectorXd& y) const;
+  [[nodiscard]] Eigen::VectorXd apply_transposed(const Eigen::VectorXd& y) const;
+
+  const problem::ThinBlocks* blocks_ = nullptr;
+  HubLu lu_;
+  bool made_ = false, exact_ = false;         // factors; of all columns of the present L0
+  problem::SparseBlock l0_;                   // of the factors,
+  Eigen::MatrixXd anchor_;                    // and their D0
+  Eigen::MatrixXd tangents_, moved_;          // D and D - D0
+  Eigen::VectorXd column_, row_, by_column_;  // by_column_: M^-1 column
+  core::DenseLu<double> small_;
+};
+
+}  // namespace whirl::solve
