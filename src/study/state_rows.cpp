@@ -25,6 +25,18 @@ std::vector<double> StateRows::film_thickness(const Eigen::VectorXd& rows) {
   return x_ ? plant_.observe(vector(rows)).film_thickness : plant_.film_thickness(rows.data());
 }
 
+solve::Cycle as_cycle(const system::Plant& plant, Vec x, double parameter, double period) {
+  const std::vector<double> whole = plant.gather(x);
+  const auto n = static_cast<Eigen::Index>(whole.size());
+  return {{0, 1}, Eigen::Map<const Eigen::VectorXd>(whole.data(), n), period, parameter};
+}
+
+core::Vector state_in(const system::Plant& plant, const solve::Cycle& equilibrium) {
+  core::Vector x = core::make_vector(plant.comm(), plant.local_size(), PETSC_DETERMINE);
+  core::fill(x.get(), {equilibrium.x.data(), equilibrium.x.data() + equilibrium.x.rows()});
+  return x;
+}
+
 std::vector<double> whole_of(MPI_Comm comm, const Eigen::VectorXd& rows) {
   const core::Vector x = core::make_vector(comm, static_cast<PetscInt>(rows.size()), PETSC_DETERMINE);
   {

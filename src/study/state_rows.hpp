@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "whirl/core/petsc.hpp"
+#include "whirl/solve/cycle/cycle.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {
@@ -23,6 +24,10 @@ private:
   system::Plant& plant_;
   core::Vector x_;
 };
+
+/// The equilibrium x of a plant as a cycle of one node, whole on every rank, and back. Collective.
+[[nodiscard]] solve::Cycle as_cycle(const system::Plant& plant, Vec x, double parameter, double period = 0);
+[[nodiscard]] core::Vector state_in(const system::Plant& plant, const solve::Cycle& equilibrium);
 
 /// All entries, on every rank, of a vector of which each rank of `comm` has its rows.
 [[nodiscard]] std::vector<double> whole_of(MPI_Comm comm, const Eigen::VectorXd& rows);

@@ -18,6 +18,7 @@
 #include "study/layout.hpp"
 #include "study/located.hpp"
 #include "study/locus/locus_follower.hpp"
+#include "study/state_rows.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -66,6 +67,10 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
         fmt::format("bifurcation {} of '{}' is the Hopf point where its cycles are born: follow it from the branch of "
                     "equilibria, or choose another one",
                     options.bifurcation, options.of));
+  if (!options.limit && seed_.event == solve::Event::branch_point)
+    throw core::NotConverged(
+        fmt::format("bifurcation {} of '{}' is of a type that cannot be followed", options.bifurcation, options.of));
+  if (of_cycles_) unbalance_ = of_cycles_->unbalance;
   first_ = of_cycles_ ? of_cycles_->parameter : of_rest_->parameter;
   first_range_ = options.first_range.value_or(first_.range);
   first_scale_ = width(first_range_);
@@ -79,21 +84,22 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   continuation_.picture_tolerance = options.picture_tolerance;
   continuation_.kind = kind_of(options.second.continuation);
   continuation_.location_tolerance = 1e-7;
+  continuation_.adapt_every = of_cycles_ && of_cycles_->adapt_mesh ? of_cycles_->adapt_every : 0;
+  if (of_cycles_) {
+    // Folds of small cycles are flat: what Newton's method leaves there shifts all of them to the same side.
+    const bool flat = cycle_options().autonomous && seed_.event == solve::Event::cyclic_fold;
+    continuation_.newton.tolerance = flat ? of_cycles_->tolerance / 100 : of_cycles_->tolerance;
+  } else {
+    continuation_.newton.max_iterations = 20;
+  }
 }
 
 void LocusFollower::begin() {
   second_value_ = start_second_;
-  problem_.reset();
-  condition_.reset();
-  cycles_.reset();
-  rest_.reset();
-  if (of_cycles_)
-    make_cycles(*of_cycles_);
-  else
-    make_equilibria();
-  if (!condition_)
-    throw core::NotConverged(
-        fmt::format("bifurcation {} of '{}' is of a type that cannot be followed", options_.bifurcation, options_.of));
+  curve_ = {};
+  system_ = make_system(seed_.cycle.parameter);
+  curve_ =
+      problem_at({seed_.cycle, {}, start_second_ / second_scale_}, seed_.critical, *system_, {1, 1}, seed_.cycle.mesh);
 }
 
 system::Train LocusFollower::train_at(double first, const FilmFactor& film) const {
@@ -121,9 +127,8 @@ std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, co
   return std::make_unique<system::RotorSystem>(space(), std::move(varying), speed->value);
 }
 
-void LocusFollower::make_cycles(const CycleBranchOptions& o) {
-  unbalance_ = o.unbalance;
-  system_ = make_system(seed_.cycle.parameter);
+solve::CycleOptions LocusFollower::cycle_options() const {
+  const CycleBranchOptions& o = *of_cycles_;
   solve::CycleOptions c;
   c.degree = o.degree;
   c.points = o.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
@@ -134,25 +139,41 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   c.state_weight = std::pow(continuation_.max_step / 0.5, 2);
   c.base_intervals = o.intervals;
   c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
-  continuation_.adapt_every = o.adapt_mesh ? o.adapt_every : 0;
-  // Folds of small cycles are flat: what Newton's method leaves there shifts all of them to the same side.
-  const bool flat = c.autonomous && seed_.event == solve::Event::cyclic_fold;
-  continuation_.newton.tolerance = flat ? o.tolerance / 100 : o.tolerance;
-  cycles_ = std::make_unique<solve::CycleProblem>(time(seed_.cycle.mesh), *system_, c, seed_.cycle.mesh);
-  if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
-  branch_ = cycles_.get();
-  const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());
-  condition_ = condition_of(*cycles_, *system_, seed_.critical);
+  return c;
 }
 
-void LocusFollower::make_equilibria() {
-  system_ = make_system(seed_.cycle.parameter);
-  continuation_.adapt_every = 0;
-  continuation_.newton.max_iterations = 20;
-  rest_ =
-      std::make_unique<solve::EquilibriumProblem>(*system_, first_scale_, std::pow(continuation_.max_step / 0.5, 2));
-  branch_ = rest_.get();
-  condition_ = solve::condition_of(*system_, *rest_, seed_.event, seed_.critical);
+core::Vector CurveProblem::state(system::RotorSystem& system, Vec at) const {
+  core::Vector x = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  rest->to_state(problem->branch_part(at).get(), x.get());
+  return x;
+}
+
+CurveProblem LocusFollower::problem_at(const CurvePoint& point, std::complex<double> critical,
+                                       system::RotorSystem& system, const FilmFactor& film,
+                                       const std::vector<double>& times) {
+  CurveProblem out;
+  core::Vector u;
+  if (of_cycles_) {
+    out.cycles = std::make_unique<solve::CycleProblem>(time(times), system, cycle_options(), times);
+    if (out.autonomous()) out.cycles->set_phase_reference(point.cycle);
+    out.branch = out.cycles.get();
+    u = out.cycles->scatter(point.cycle);
+  } else {
+    out.rest =
+        std::make_unique<solve::EquilibriumProblem>(system, first_scale_, std::pow(continuation_.max_step / 0.5, 2));
+    out.branch = out.rest.get();
+    u = out.rest->make_unknown();
+    out.rest->from_state(state_in(system, point.cycle).get(), point.cycle.parameter, u.get());
+  }
+  const core::Vector along = solve::any_tangent(*out.branch, u.get());
+  out.condition = out.cycles ? condition_of(*out.cycles, system, critical, film)
+                             : solve::condition_of(system, *out.rest, seed_.event, critical);
+  out.problem =
+      std::make_unique<solve::AugmentedProblem>(*out.branch, *out.condition, along.get(), second(system, film));
+  out.whole = out.problem->make_unknown();
+  out.problem->join(u.get(), point.inner.size() > 0 ? point.inner : out.condition->start(), point.second,
+                    out.whole.get());
+  return out;
 }
 
 solve::SecondParameter LocusFollower::second(system::RotorSystem& system, const FilmFactor& film) {
@@ -164,10 +185,10 @@ solve::SecondParameter LocusFollower::second(system::RotorSystem& system, const 
 }
 
 Row LocusFollower::row_at(Vec whole, double second) const {
-  const core::Vector u = problem_->branch_part(whole);
-  const Eigen::VectorXd inner = problem_->inner(whole);
-  Row row{solve::last_entry(branch_->comm(), u.get()) * first_scale_, second * second_scale_, 0, 0, 0};
-  if (cycles_) row.period = cycles_->gather(u.get()).period;
+  const core::Vector u = curve_.problem->branch_part(whole);
+  const Eigen::VectorXd inner = curve_.problem->inner(whole);
+  Row row{solve::last_entry(curve_.branch->comm(), u.get()) * first_scale_, second * second_scale_, 0, 0, 0};
+  if (curve_.cycles) row.period = curve_.cycles->gather(u.get()).period;
   if (seed_.event == solve::Event::hopf) row.period = 2 * std::numbers::pi / std::abs(inner(0));
   if (seed_.event == solve::Event::flip) row.angle = std::numbers::pi;
   if (seed_.event == solve::Event::neimark_sacker) row.angle = std::acos(std::clamp(inner(0), -1.0, 1.0));
@@ -184,21 +205,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     start_second_ = left->real("second");
   }
   begin();
-  core::Vector u = core::duplicate(branch_->weights());
-  if (cycles_) {
-    u = cycles_->scatter(seed_.cycle);
-  } else {
-    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
-    {
-      const core::WriteArray a(x.get());
-      for (PetscInt i = 0; i < a.size(); ++i) a[i] = seed_.cycle.x(i, 0);
-    }
-    rest_->from_state(x.get(), seed_.cycle.parameter, u.get());
-  }
-  const core::Vector along = solve::any_tangent(*branch_, u.get());
-  problem_ = std::make_unique<solve::AugmentedProblem>(*branch_, *condition_, along.get(), second(*system_));
-  core::Vector start = problem_->make_unknown();
-  problem_->join(u.get(), condition_->start(), start_second_ / second_scale_, start.get());
+  core::Vector start = std::move(curve_.whole);
   seed_ = born;
   start_second_ = start_second;
   rows_.clear();
@@ -212,10 +219,10 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     restart = restore(*left, start.get());
     core::check(VecCopy(restart->u.get(), start.get()));
     // Whether the first step passes amplitude zero is seen by comparison with the last point.
-    if (cycles_ && cycles_->options().autonomous) last_swing_ = swing(start.get());
+    if (curve_.autonomous()) last_swing_ = swing(start.get());
     if (options_.limit) watch_peaks(start.get(), last_);
   }
-  problem_->prime(start.get());
+  curve_.problem->prime(start.get());
 
   solve::ContinuationOptions continuation = continuation_;
   continuation.from = start_second_ / second_scale_;
@@ -233,7 +240,9 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     }
     return values;
   };
-  callbacks.drawn = [&](Vec whole) { return std::vector<std::vector<double>>{{problem_->first_parameter(whole)}}; };
+  callbacks.drawn = [&](Vec whole) {
+    return std::vector<std::vector<double>>{{curve_.problem->first_parameter(whole)}};
+  };
   callbacks.on_zero = [&](const solve::LocatedZero& zero, Vec whole) {
     if (!zero.located) return;
     const std::string type = names[zero.monitor];
@@ -260,7 +269,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     put_others(whole, last_);
     if (options_.limit) watch_peaks(whole, before);
     if (options_.limit && point.index == 0) seed_.sensitivity = slope_of_limit(whole);
-    if (cycles_ && cycles_->options().autonomous) {
+    if (curve_.autonomous()) {
       last_swing_ = swing(whole);
       last_.amplitude = amplitude_of(last_swing_);
     }
@@ -279,14 +288,14 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     }
     // Beyond a Bogdanov-Takens point a Hopf curve runs back on itself; beyond the strong resonances 1:1 and 1:2 a
     // Neimark-Sacker curve is one of two real multipliers with product one.
-    const Eigen::VectorXd inner = problem_->inner(whole);
+    const Eigen::VectorXd inner = curve_.problem->inner(whole);
     if (seed_.event == solve::Event::hopf) {
       if (inner_sign_ == 0) inner_sign_ = inner(0);
       ended_ = inner(0) * inner_sign_ < 0;
     }
     if (seed_.event == solve::Event::neimark_sacker) ended_ = std::abs(inner(0)) > 1;
     // A step goes on from its end, not from the points within it.
-    if (!point.between) problem_->update();
+    if (!point.between) curve_.problem->update();
     context_.results.progress(fmt::format("{}: point {}, {} {:.6g} {}, {} {:.6g} {}, step {:.3g}, {:.1f} s",
                                           context_.results.summary().name, point.index + 1, first_.path,
                                           deck::from_si(last_.first, first_range_.unit), first_range_.unit,
@@ -294,8 +303,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
                                           options_.second.range.unit, point.step, context_.results.seconds()));
   };
   callbacks.checkpoint = [&](const solve::ResumePoint& at, Vec whole, Vec tangent) {
-    if (cycles_ && cycles_->options().autonomous)
-      cycles_->set_phase_reference(cycles_->gather(problem_->branch_part(whole).get()));
+    if (curve_.autonomous()) curve_.cycles->set_phase_reference(curve_.cycle(whole));
     const double low = std::min(first_range_.from, first_range_.to),
                  high = std::max(first_range_.from, first_range_.to);
     left_ = last_.first < low || last_.first > high;
@@ -305,12 +313,12 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   if (restart) {
     // The signs of the tests are those of the borders, which are other ones than those of the interrupted run.
     const core::Vector row = core::duplicate(start.get());
-    solve::weighted_row(*problem_, restart->tangent.get(), row.get());
-    problem_->linearise(restart->u.get(), row.get());
+    solve::weighted_row(*curve_.problem, restart->tangent.get(), row.get());
+    curve_.problem->linearise(restart->u.get(), row.get());
     restart->point.monitors = callbacks.monitors(restart->u.get(), restart->tangent.get());
-    problem_->update();
+    curve_.problem->update();
   }
-  end = solve::follow_branch(*problem_, std::move(start), continuation, callbacks, std::move(restart));
+  end = solve::follow_branch(*curve_.problem, std::move(start), continuation, callbacks, std::move(restart));
   if (end.limited && shrunk) {
     ended_ = end_at_generalised_hopf();
     context_.results.group().set("end", end.reason);

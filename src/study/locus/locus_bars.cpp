@@ -13,6 +13,7 @@
 
 #include "study/bars/summary_bars.hpp"
 #include "study/locus/locus_follower.hpp"
+#include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -40,34 +41,21 @@ private:
   double was_;
 };
 
+// Of the curve through a point, towards increasing arclength as `row` measures it.
+core::Vector tangent_at(const CurveProblem& there, Vec row) {
+  there.problem->linearise(there.whole.get(), row);
+  core::Vector rhs = core::duplicate(there.whole.get()), t = core::duplicate(there.whole.get());
+  solve::parameter_row(*there.problem, rhs.get());
+  (void)solve::solve_linear(*there.problem, rhs.get(), t.get(), "tangent_");
+  return t;
+}
+
 }  // namespace
-
-/// The problem of the curve on another mesh, near a point of it.
-struct LocusFollower::Elsewhere {
-  std::unique_ptr<system::RotorSystem> system;
-  std::unique_ptr<solve::CycleProblem> cycles;
-  std::unique_ptr<solve::EquilibriumProblem> rest;
-  std::unique_ptr<solve::Condition> condition;
-  std::unique_ptr<solve::AugmentedProblem> problem;
-  core::Vector whole;
-
-  [[nodiscard]] Eigen::Vector2d place() const {
-    return {problem->first_parameter(whole.get()), solve::last_entry(problem->comm(), whole.get())};
-  }
-  // Towards increasing arclength of the curve as `row` measures it.
-  [[nodiscard]] core::Vector tangent(Vec row) const {
-    problem->linearise(whole.get(), row);
-    core::Vector rhs = core::duplicate(whole.get()), t = core::duplicate(whole.get());
-    solve::parameter_row(*problem, rhs.get());
-    (void)solve::solve_linear(*problem, rhs.get(), t.get(), "tangent_");
-    return t;
-  }
-};
 
 MeshLaw LocusFollower::law() const {
   MeshLaw law = law_of(context_.machine, context_.layout);
-  if (cycles_) {
-    const solve::CycleOptions& o = cycles_->options();
+  if (curve_.cycles) {
+    const solve::CycleOptions& o = curve_.cycles->options();
     law.time_order = order_in_time(context_.machine, 2 * o.degree - (o.points == solve::Points::radau ? 1 : 0));
   }
   return law;
@@ -75,7 +63,7 @@ MeshLaw LocusFollower::law() const {
 
 std::vector<CycleMesh> LocusFollower::meshes() const {
   std::vector<CycleMesh> out;
-  if (cycles_) out = time_meshes(!merged(cycles_->mesh()).empty(), context_.layout);
+  if (curve_.cycles) out = time_meshes(!merged(curve_.cycles->mesh()).empty(), context_.layout);
   if (system_->has_film_mesh())
     for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
       out.push_back({m.axis, m.spacing, m.factor});
@@ -83,71 +71,39 @@ std::vector<CycleMesh> LocusFollower::meshes() const {
 }
 
 CurvePoint LocusFollower::point_at(Vec whole) const {
-  const core::Vector u = problem_->branch_part(whole);
   CurvePoint out;
-  if (cycles_) {
-    out.cycle = cycles_->gather(u.get());
-  } else {
-    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
-    rest_->to_state(u.get(), x.get());
-    const std::vector<double> all = system_->gather(x.get());
-    out.cycle = {{0, 1},
-                 Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size())),
-                 0,
-                 problem_->first_parameter(whole) * first_scale_};
-  }
-  out.inner = problem_->inner(whole);
-  out.second = solve::last_entry(problem_->comm(), whole);
+  out.cycle = curve_.cycles ? curve_.cycle(whole)
+                            : as_cycle(*system_, curve_.state(*system_, whole).get(),
+                                       curve_.problem->first_parameter(whole) * first_scale_);
+  out.inner = curve_.problem->inner(whole);
+  out.second = solve::last_entry(curve_.problem->comm(), whole);
   return out;
 }
 
 // Without a mesh of time that coarse: nothing. The second parameter of this follower is left at that of the point.
-std::unique_ptr<LocusFollower::Elsewhere> LocusFollower::carried_to(const CycleMesh& mesh, const CurvePoint& given) {
-  auto out = std::make_unique<Elsewhere>();
+std::optional<CurveProblem> LocusFollower::carried_to(const CycleMesh& mesh, const CurvePoint& given) {
+  std::vector<double> times = given.cycle.mesh;
+  if (mesh.axis == Axis::time)
+    for (double left = 1 / mesh.spacing; left > 1; left /= 2) times = solve::doubled(times);
+  if (mesh.axis == Axis::time && mesh.spacing > 1) times = merged(times);
+  if (times.empty()) return {};
   second_value_ = given.second * second_scale_;
-  out->system = make_system(given.cycle.parameter, mesh.film);
-  system::RotorSystem& system = *out->system;
-  solve::Cycle cycle = resampled(system, *system_, given.cycle);
-  solve::ExtendedProblem* branch = nullptr;
-  core::Vector u;
+  auto system = make_system(given.cycle.parameter, mesh.film);
+  CurvePoint point = given;
+  point.cycle = resampled(*system, *system_, std::move(point.cycle));
   std::complex<double> critical = 1;
-  if (cycles_) {
-    std::vector<double> times = cycle.mesh;
-    if (mesh.axis == Axis::time)
-      for (double left = 1 / mesh.spacing; left > 1; left /= 2) times = solve::doubled(times);
-    if (mesh.axis == Axis::time && mesh.spacing > 1) times = merged(times);
-    if (times.empty()) return nullptr;
-    out->cycles = std::make_unique<solve::CycleProblem>(time(times), system, cycles_->options(), times);
-    if (cycles_->options().autonomous) out->cycles->set_phase_reference(cycle);
-    branch = out->cycles.get();
-    u = out->cycles->scatter(cycle);
-    if (seed_.event == solve::Event::neimark_sacker)
-      critical = std::polar(1.0, std::acos(std::clamp(given.inner(0), -1.0, 1.0)));
-  } else {
-    core::Vector x = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
-    {
-      const core::WriteArray a(x.get());
-      for (PetscInt i = 0; i < a.size(); ++i) a[i] = cycle.x(i, 0);
-    }
-    // Beyond a fold there is no equilibrium at these parameters.
-    if (seed_.event == solve::Event::hopf) {
-      (void)solve::find_equilibrium(system, x.get(), continuation_.newton);
-      critical = {0, given.inner(0)};
-    }
-    out->rest =
-        std::make_unique<solve::EquilibriumProblem>(system, first_scale_, std::pow(continuation_.max_step / 0.5, 2));
-    branch = out->rest.get();
-    u = out->rest->make_unknown();
-    out->rest->from_state(x.get(), cycle.parameter, u.get());
+  if (seed_.event == solve::Event::neimark_sacker)
+    critical = std::polar(1.0, std::acos(std::clamp(given.inner(0), -1.0, 1.0)));
+  // Beyond a fold there is no equilibrium at these parameters.
+  if (seed_.event == solve::Event::hopf) {
+    const core::Vector x = state_in(*system, point.cycle);
+    (void)solve::find_equilibrium(*system, x.get(), continuation_.newton);
+    point.cycle = as_cycle(*system, x.get(), given.cycle.parameter);
+    critical = {0, given.inner(0)};
   }
-  const core::Vector along = solve::any_tangent(*branch, u.get());
-  out->condition = cycles_ ? condition_of(*out->cycles, system, critical, mesh.film)
-                           : solve::condition_of(system, *out->rest, seed_.event, critical);
-  out->problem =
-      std::make_unique<solve::AugmentedProblem>(*branch, *out->condition, along.get(), second(system, mesh.film));
-  out->whole = out->problem->make_unknown();
-  out->problem->join(u.get(), given.inner, given.second, out->whole.get());
-  out->problem->prime(out->whole.get());
+  CurveProblem out = problem_at(point, critical, *system, mesh.film, times);
+  out.other = std::move(system);
+  out.problem->prime(out.whole.get());
   return out;
 }
 
@@ -166,7 +122,7 @@ std::vector<double> LocusFollower::beside_curve(const CycleMesh& mesh, const Cur
     there->problem->join(part.get(), Eigen::VectorXd::Zero(point.inner.size()), along(1), row.get());
     if (!solve::newton(*there->problem, there->whole.get(), row.get(), along.dot(here), continuation_.newton).converged)
       return {};
-    const Eigen::Vector2d moved = there->place() - here;
+    const Eigen::Vector2d moved = there->place(there->whole.get()) - here;
     return {along(0) * moved(1) - along(1) * moved(0)};
   });
 }
@@ -187,7 +143,7 @@ std::vector<double> LocusFollower::zero_on(const CycleMesh& mesh, const CurvePoi
     for (int k = 0; k < most_secants; ++k) {
       if (k > 0) check(VecAXPY(there->whole.get(), s - last_s, t.get()));
       if (!solve::newton(problem, there->whole.get(), row.get(), middle + s, continuation_.newton).converged) return {};
-      t = there->tangent(row.get());
+      t = tangent_at(*there, row.get());
       double value = unknown;
       if (type == meeting) value = solve::last_entry(problem.comm(), t.get());
       if (type == meeting_over_second) value = problem.first_parameter(t.get());
@@ -196,7 +152,7 @@ std::vector<double> LocusFollower::zero_on(const CycleMesh& mesh, const CurvePoi
       const double next = k == 0 ? s + continuation_.max_step / 100 : s - value * (s - last_s) / (value - last_value);
       if (value == 0 || (k > 0 && std::abs(next - s) < continuation_.location_tolerance)) {
         if (value != 0) check(VecAXPY(there->whole.get(), next - s, t.get()));
-        const Eigen::Vector2d found = there->place();
+        const Eigen::Vector2d found = there->place(there->whole.get());
         return {found(0), found(1)};
       }
       if (!(std::abs(next) < farthest)) return {};
@@ -214,9 +170,7 @@ std::vector<double> LocusFollower::direction_at(const CurvePoint& point) {
   return answer_of([&]() -> std::vector<double> {
     const auto here = carried_to({}, point);
     const core::Vector t = solve::any_tangent(*here->problem, here->whole.get());
-    const Eigen::Vector2d along =
-        Eigen::Vector2d(here->problem->first_parameter(t.get()), solve::last_entry(here->problem->comm(), t.get()))
-            .normalized();
+    const Eigen::Vector2d along = here->place(t.get()).normalized();
     return {along(0), along(1)};
   });
 }
@@ -277,7 +231,7 @@ void LocusFollower::put_bars(io::CodimensionTwo& c, Vec whole, double location) 
                second_unit = second_scale_ / deck::number_to_si(1, options_.second.range.unit);
   c.more["value_uncertainty"] = first.total() * first_unit;
   c.uncertainty = second.total() * second_unit;
-  for (const auto& [part, value] : second.parts(cycles_ != nullptr))
+  for (const auto& [part, value] : second.parts(curve_.cycles != nullptr))
     c.more["second_value_" + part] = value * second_unit;
 }
 

@@ -22,13 +22,13 @@ constexpr int samples = 24;
 
 // Half the change of the states within half a period, at equidistant times, scaled.
 Eigen::MatrixXd LocusFollower::swing(Vec whole) const {
-  const solve::Cycle cycle = cycles_->gather(problem_->branch_part(whole).get());
+  const solve::Cycle cycle = curve_.cycle(whole);
   Eigen::MatrixXd out(cycle.x.rows(), samples);
   for (int k = 0; k < samples; ++k) {
     const double s = 0.5 * k / samples;
-    out.col(k) =
-        (cycle.at(cycles_->scheme(), s) - cycle.at(cycles_->scheme(), s + 0.5)).cwiseQuotient(cycles_->state_scale()) /
-        2;
+    out.col(k) = (cycle.at(curve_.cycles->scheme(), s) - cycle.at(curve_.cycles->scheme(), s + 0.5))
+                     .cwiseQuotient(curve_.cycles->state_scale()) /
+                 2;
   }
   return out;
 }
@@ -43,8 +43,7 @@ double LocusFollower::amplitude_of(const Eigen::MatrixXd& swing) const {
 // The square of the amplitude over that at which the curve ends, minus one: linear in the parameters near the end.
 // Beyond it the same cycles come again half a period later, which counts as a negative square.
 double LocusFollower::margin_of_amplitude(Vec whole) const {
-  if (!cycles_ || !cycles_->options().autonomous || seed_.event != solve::Event::cyclic_fold)
-    return std::numeric_limits<double>::infinity();
+  if (!curve_.autonomous() || seed_.event != solve::Event::cyclic_fold) return std::numeric_limits<double>::infinity();
   const Eigen::MatrixXd here = swing(whole);
   const double ratio = amplitude_of(here) / least_amplitude;
   const bool beyond = last_swing_.size() > 0 && (here.array() * last_swing_.array()).sum() < 0;

@@ -63,6 +63,26 @@ struct Beside {
   Eigen::Vector2d moved = Eigen::Vector2d::Zero();
 };
 
+/// The equations of a curve about a point of it, on the films of one machine and one mesh of time.
+struct CurveProblem {
+  std::unique_ptr<system::RotorSystem> other = {};       ///< a machine of its own; null: that of the curve
+  std::unique_ptr<solve::CycleProblem> cycles = {};      ///< of a branch of cycles, else null
+  std::unique_ptr<solve::EquilibriumProblem> rest = {};  ///< of a branch of equilibria, else null
+  solve::ExtendedProblem* branch = nullptr;              ///< the one of both that there is
+  std::unique_ptr<solve::Condition> condition = {};
+  std::unique_ptr<solve::AugmentedProblem> problem = {};
+  core::Vector whole = {};  ///< the point
+
+  [[nodiscard]] bool autonomous() const { return cycles && cycles->options().autonomous; }
+  /// The cycle, and the equilibrium [SI], of a point.
+  [[nodiscard]] solve::Cycle cycle(Vec at) const { return cycles->gather(problem->branch_part(at).get()); }
+  [[nodiscard]] core::Vector state(system::RotorSystem& system, Vec at) const;
+  /// Both scaled parameters.
+  [[nodiscard]] Eigen::Vector2d place(Vec at) const {
+    return {problem->first_parameter(at), solve::last_entry(problem->comm(), at)};
+  }
+};
+
 /// The branch problem at the bifurcation that the curve begins with, in both parameters.
 class LocusFollower {
 public:
@@ -73,8 +93,12 @@ private:
   static constexpr std::size_t points_each_way = 8;  // that are kept with their solutions
   // System, branch problem and condition at the start of the curve.
   void begin();
-  void make_cycles(const CycleBranchOptions& o);
-  void make_equilibria();
+  [[nodiscard]] solve::CycleOptions cycle_options() const;
+  // About `point` with that critical eigenvalue or multiplier, on a system with `film` and on the time mesh `times`.
+  // Without inner unknowns of the point those of the condition.
+  [[nodiscard]] CurveProblem problem_at(const CurvePoint& point, std::complex<double> critical,
+                                        system::RotorSystem& system, const FilmFactor& film,
+                                        const std::vector<double>& times);
   // At a first parameter and the present second one.
   [[nodiscard]] system::Train train_at(double first, const FilmFactor& film = {1, 1}) const;
   /// Who holds a system, and who shares the intervals of cycles on `mesh`.
@@ -89,9 +113,6 @@ private:
   void record_row(const std::string& type, const Row& row, double error);
   // A zero of the coefficient of a normal form, if it is one of the equations.
   void record_generalised(const std::string& type, double second, double bracket, Vec whole);
-  [[nodiscard]] Beside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
-  // With the usual film mesh or the halved one, and differences of `step` times their usual length.
-  [[nodiscard]] Beside hopfs_beside(Vec whole, bool half_film, double step, double reach);
   // On the discretisation of the curve, or on another one.
   [[nodiscard]] Beside beside(Vec whole, bool other, double reach);
   // Whether the zero of the coefficient at `whole` is one on another discretisation too: its error in scaled second
@@ -110,11 +131,10 @@ private:
   [[nodiscard]] double slope_of_limit(Vec whole);
   void watch_peaks(Vec whole, const Row& before);
   // The curve and its points of codimension two on other meshes.
-  struct Elsewhere;
   [[nodiscard]] MeshLaw law() const;
   [[nodiscard]] std::vector<CycleMesh> meshes() const;
   [[nodiscard]] CurvePoint point_at(Vec whole) const;
-  [[nodiscard]] std::unique_ptr<Elsewhere> carried_to(const CycleMesh& mesh, const CurvePoint& given);
+  [[nodiscard]] std::optional<CurveProblem> carried_to(const CycleMesh& mesh, const CurvePoint& given);
   [[nodiscard]] std::vector<double> beside_curve(const CycleMesh& mesh, const CurvePoint& point,
                                                  const Eigen::Vector2d& along);
   [[nodiscard]] std::vector<double> zero_on(const CycleMesh& mesh, const CurvePoint& near, const std::string& type);
@@ -158,11 +178,7 @@ private:
   double start_second_ = 0, second_value_ = 0;  // SI: at the start, and to which the system is set
   solve::ContinuationOptions continuation_;
   std::unique_ptr<system::RotorSystem> system_;
-  std::unique_ptr<solve::CycleProblem> cycles_;
-  std::unique_ptr<solve::EquilibriumProblem> rest_;
-  solve::ExtendedProblem* branch_ = nullptr;
-  std::unique_ptr<solve::Condition> condition_;
-  std::unique_ptr<solve::AugmentedProblem> problem_;
+  CurveProblem curve_;
   std::unique_ptr<Pieces> pieces_;
   bool second_way_ = false;  // the first direction is done:
   std::vector<Row> done_;    // its points

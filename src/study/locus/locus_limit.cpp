@@ -25,26 +25,26 @@ std::unique_ptr<solve::Condition> LocusFollower::condition_of(solve::CycleProble
 }
 
 double LocusFollower::slope_of_limit(Vec whole) {
-  const core::Vector u = problem_->branch_part(whole), along = solve::any_tangent(*cycles_, u.get());
+  const core::Vector u = curve_.problem->branch_part(whole), along = solve::any_tangent(*curve_.cycles, u.get());
   Eigen::MatrixXd none;
   std::vector<core::Vector> gradients;
-  condition_->derivatives(u.get(), {}, none, gradients);
+  curve_.condition->derivatives(u.get(), {}, none, gradients);
   double slope = 0;
   core::check(VecDot(gradients.front().get(), along.get(), &slope));
-  return slope / solve::last_entry(cycles_->comm(), along.get());
+  return slope / solve::last_entry(curve_.cycles->comm(), along.get());
 }
 
 void LocusFollower::watch_peaks(Vec whole, const Row& before) {
   const solve::CycleQuantity quantity = quantity_of(*options_.limit);
   const double depth = 1e-3 * options_.limit->value.value;
-  const solve::Cycle path =
-      place_of(*options_.limit, *system_).path(cycles_->gather(problem_->branch_part(whole).get()));
+  const solve::Cycle path = place_of(*options_.limit, *system_).path(curve_.cycle(whole));
   std::vector<double> times;
   bool jumped = false;
   for (std::size_t k = 0; k < quantity.directions.size(); ++k) {
-    const auto peak = solve::peak_of(cycles_->scheme(), path, quantity.directions[k]);
-    jumped = jumped || (k < peak_times_.size() && solve::another_peak(cycles_->scheme(), path, quantity.directions[k],
-                                                                      peak, peak_times_[k], depth));
+    const auto peak = solve::peak_of(curve_.cycles->scheme(), path, quantity.directions[k]);
+    jumped = jumped ||
+             (k < peak_times_.size() &&
+              solve::another_peak(curve_.cycles->scheme(), path, quantity.directions[k], peak, peak_times_[k], depth));
     times.push_back(peak.time);
   }
   peak_times_ = std::move(times);

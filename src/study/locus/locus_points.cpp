@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <functional>
 
+#include "study/bars/summary_bars.hpp"
 #include "study/locus/locus_follower.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -13,34 +13,7 @@
 #include "whirl/system/dimensionless_groups.hpp"
 
 namespace whirl::study {
-namespace {
-
 using core::check;
-
-// The curve at `reach` behind and ahead of the point (u, inner unknowns, q), and a coefficient there.
-Beside look_beside(solve::AugmentedProblem& problem, Vec u, const Eigen::VectorXd& inner, double q, double reach,
-                   const solve::NewtonOptions& newton, const std::function<double(Vec)>& coefficient) {
-  core::Vector here = problem.make_unknown(), row = core::duplicate(here.get());
-  problem.join(u, inner, q, here.get());
-  problem.prime(here.get());
-  const core::Vector tangent = solve::any_tangent(problem, here.get());
-  solve::weighted_row(problem, tangent.get(), row.get());
-  double middle = 0;
-  check(VecDot(row.get(), here.get(), &middle));
-  Beside out;
-  for (const bool ahead : {false, true}) {
-    check(VecAXPY(here.get(), ahead ? 2 * reach : -reach, tangent.get()));
-    const auto result = solve::newton(problem, here.get(), row.get(), middle + (ahead ? reach : -reach), newton);
-    if (!result.converged) throw core::NotConverged(result.reason);
-    problem.linearise(here.get(), row.get());
-    (ahead ? out.ahead : out.behind) = coefficient(here.get());
-    const Eigen::Vector2d place(problem.first_parameter(here.get()), solve::last_entry(problem.comm(), here.get()));
-    out.moved += ahead ? place : Eigen::Vector2d(-place);
-  }
-  return out;
-}
-
-}  // namespace
 
 void LocusFollower::record(const std::string& type, double second, double error, Vec whole) {
   record_row(type, row_at(whole, second), error);
@@ -64,49 +37,45 @@ void LocusFollower::record_row(const std::string& type, const Row& row, double e
   context_.results.summary().codimension_two.push_back(std::move(c));
 }
 
-Beside LocusFollower::flips_beside(Vec whole, const std::vector<double>& mesh, double reach) {
-  const auto cycle = cycles_->gather(problem_->branch_part(whole).get());
-  solve::CycleProblem cycles(time(mesh), *system_, cycles_->options(), mesh);
-  const core::Vector u = cycles.scatter(cycle), along = solve::any_tangent(cycles, u.get());
-  const auto condition = solve::make_flip(cycles);
-  solve::AugmentedProblem problem(cycles, *condition, along.get(), second(*system_));
-  return look_beside(problem, u.get(), condition->start(), solve::last_entry(problem_->comm(), whole), reach,
-                     continuation_.newton,
-                     [&](Vec here) { return solve::flip_coefficient(cycles, problem.branch_part(here).get()); });
-}
-
-Beside LocusFollower::hopfs_beside(Vec whole, bool half_film, double step, double reach) {
-  const FilmFactor film = half_film ? FilmFactor{0.5, 0.5} : FilmFactor{1, 1};
-  core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
-  rest_->to_state(problem_->branch_part(whole).get(), x.get());
-  const double first = problem_->first_parameter(whole) * first_scale_, omega = problem_->inner(whole)(0);
-  std::unique_ptr<system::RotorSystem> coarse;
-  if (half_film) {
-    coarse = make_system(first, film);
-    const std::vector<double> there = coarse->resampled(*system_, system_->gather(x.get()).data());
-    x = core::make_vector(coarse->comm(), coarse->local_size(), PETSC_DETERMINE);
-    const core::WriteArray to(x.get());
-    for (PetscInt i = 0; i < to.size(); ++i) to[i] = there[static_cast<std::size_t>(i)];
-  }
-  system::RotorSystem& system = coarse ? *coarse : *system_;
-  solve::EquilibriumProblem rest(system, first_scale_, std::pow(continuation_.max_step / 0.5, 2));
-  core::Vector u = rest.make_unknown();
-  rest.from_state(x.get(), first, u.get());
-  const core::Vector along = solve::any_tangent(rest, u.get());
-  const auto condition = solve::condition_of(system, rest, solve::Event::hopf, {0, omega});
-  solve::AugmentedProblem problem(rest, *condition, along.get(), second(system, film));
-  return look_beside(problem, u.get(), condition->start(), solve::last_entry(problem_->comm(), whole), reach,
-                     continuation_.newton, [&](Vec here) {
-                       rest.to_state(problem.branch_part(here).get(), x.get());
-                       return solve::hopf_coefficient(system, x.get(), problem.inner(here)(0), step);
-                     });
-}
-
+// The other discretisation is a time mesh of twice as many intervals, films of half the cells or, of films in closed
+// form, differences of half the length: that is all that these leave to choose.
 Beside LocusFollower::beside(Vec whole, bool other, double reach) {
-  if (cycles_) return flips_beside(whole, other ? solve::doubled(cycles_->mesh()) : cycles_->mesh(), reach);
-  // The length of the differences is all that a film in closed form leaves to choose.
-  const bool mesh = system_->has_film_mesh();
-  return hopfs_beside(whole, other && mesh, other && !mesh ? 4 : 8, reach);
+  CurvePoint point = point_at(whole);
+  const bool half_film = other && curve_.rest && system_->has_film_mesh();
+  const double step = other && !half_film ? 4 : 8;
+  const FilmFactor film = half_film ? FilmFactor{0.5, 0.5} : FilmFactor{1, 1};
+  const auto coarse = half_film ? make_system(point.cycle.parameter, film) : nullptr;
+  system::RotorSystem& system = coarse ? *coarse : *system_;
+  const std::vector<double>& mesh = point.cycle.mesh;
+  const std::vector<double> times = other && curve_.cycles ? solve::doubled(mesh) : mesh;
+  const std::complex<double> critical = curve_.cycles ? -1 : std::complex<double>(0, point.inner(0));
+  point.cycle = resampled(system, *system_, std::move(point.cycle));
+  point.inner.resize(0);
+  const CurveProblem there = problem_at(point, critical, system, film, times);
+  const auto coefficient = [&](Vec at) {
+    if (there.cycles) return solve::flip_coefficient(*there.cycles, there.problem->branch_part(at).get());
+    return solve::hopf_coefficient(system, there.state(system, at).get(), there.problem->inner(at)(0), step);
+  };
+  // The curve at `reach` behind and ahead of the point, and the coefficient there.
+  solve::AugmentedProblem& problem = *there.problem;
+  const Vec here = there.whole.get();
+  core::Vector row = core::duplicate(here);
+  problem.prime(here);
+  const core::Vector tangent = solve::any_tangent(problem, here);
+  solve::weighted_row(problem, tangent.get(), row.get());
+  double middle = 0;
+  check(VecDot(row.get(), here, &middle));
+  Beside out;
+  for (const bool ahead : {false, true}) {
+    check(VecAXPY(here, ahead ? 2 * reach : -reach, tangent.get()));
+    const auto result =
+        solve::newton(problem, here, row.get(), middle + (ahead ? reach : -reach), continuation_.newton);
+    if (!result.converged) throw core::NotConverged(result.reason);
+    problem.linearise(here, row.get());
+    (ahead ? out.ahead : out.behind) = coefficient(here);
+    out.moved += (ahead ? 1 : -1) * there.place(here);
+  }
+  return out;
 }
 
 // Where the journal stands still in its oil for a moment the force of a closed-form film has a kink, and the
@@ -133,7 +102,7 @@ void LocusFollower::record_generalised(const std::string& type, double second_he
   Verdict verdict;
   double reach = continuation_.max_step / 100;
   const auto look = [&]() -> std::vector<double> {
-    try {
+    const bool answered = has_answer([&] {
       verdict = judge(whole, reach);
       // Kinks of a film on its mesh blur the coefficient: from farther away they matter less.
       if (std::isnan(verdict.error)) {
@@ -141,13 +110,8 @@ void LocusFollower::record_generalised(const std::string& type, double second_he
         verdict = judge(whole, reach *= 10);
         verdict.unclear = verdict.unclear || unclear;
       }
-    } catch (const core::NotConverged&) {
-      verdict.unclear = true;
-    } catch (const core::DomainError&) {
-      verdict.unclear = true;
-    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-      verdict.unclear = true;
-    }
+    });
+    verdict.unclear = verdict.unclear || !answered;
     return {verdict.error, verdict.unclear ? 1.0 : 0.0, reach};
   };
   const std::vector<double> seen = pieces_->numbers(fmt::format("generalised {}", ++zeros_), look);
@@ -167,7 +131,7 @@ void LocusFollower::record_generalised(const std::string& type, double second_he
     record(type, second_here, verdict.error + bracket, whole);
   } else if (verdict.unclear) {
     suspect(second_here - reach, second_here + reach,
-            cycles_
+            curve_.cycles
                 ? "the coefficient of the flip changes its sign, but not alike on the doubled time mesh"
                 : "the first Lyapunov coefficient changes its sign, but not alike on another film mesh or with other "
                   "differences");

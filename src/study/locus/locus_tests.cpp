@@ -11,15 +11,14 @@
 
 namespace whirl::study {
 std::vector<solve::CodimensionTest> LocusFollower::tests(Vec whole, Vec tangent) {
-  std::vector<solve::CodimensionTest> all = problem_->tests();
+  std::vector<solve::CodimensionTest> all = curve_.problem->tests();
   // Where the curve has an extremum in one parameter, two bifurcations of the other meet.
-  all.push_back({meeting_over_second, problem_->first_parameter(tangent)});
+  all.push_back({meeting_over_second, curve_.problem->first_parameter(tangent)});
   if (seed_.event == solve::Event::hopf) {
     // Where the first Lyapunov coefficient changes its sign the cycles turn from supercritical to subcritical. Near
     // zero it is a difference of larger terms: longer steps than usual leave less rounding in its third derivatives.
-    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
-    rest_->to_state(problem_->branch_part(whole).get(), x.get());
-    all.push_back({generalised_hopf, solve::hopf_coefficient(*system_, x.get(), problem_->inner(whole)(0), 8)});
+    const core::Vector x = curve_.state(*system_, whole);
+    all.push_back({generalised_hopf, solve::hopf_coefficient(*system_, x.get(), curve_.problem->inner(whole)(0), 8)});
   }
   return all;
 }
@@ -27,27 +26,25 @@ std::vector<solve::CodimensionTest> LocusFollower::tests(Vec whole, Vec tangent)
 // A Hopf curve along which another mode is unstable already is no border of stability.
 void LocusFollower::put_others(Vec whole, Row& at) {
   core::Vector left = core::duplicate(whole);
-  problem_->residual(whole, left.get());  // sets both parameters
-  const core::Vector u = problem_->branch_part(whole);
+  curve_.problem->residual(whole, left.get());  // sets both parameters
   solve::Stability all;
   std::vector<std::complex<double>> critical;
-  if (cycles_) {
+  if (curve_.cycles) {
+    const core::Vector u = curve_.problem->branch_part(whole);
     core::Vector row = core::duplicate(u.get());
     // At a fold the matrix with the parameter fixed is singular.
-    solve::weighted_row(*cycles_, solve::any_tangent(*cycles_, u.get()).get(), row.get());
-    cycles_->linearise(u.get(), row.get());
-    all = cycle_stability(*cycles_, *system_);
+    solve::weighted_row(*curve_.cycles, solve::any_tangent(*curve_.cycles, u.get()).get(), row.get());
+    curve_.cycles->linearise(u.get(), row.get());
+    all = cycle_stability(*curve_.cycles, *system_);
     if (!all.mesh_waves.empty()) at.mesh_wave = Row::unknown_frequency;
     const double angle = row_at(whole, 0).angle;
     if (!options_.limit) critical.push_back(std::polar(1.0, angle));
     if (seed_.event == solve::Event::neimark_sacker) critical.push_back(std::polar(1.0, -angle));
-    if (cycles_->options().autonomous) critical.emplace_back(1);
+    if (curve_.autonomous()) critical.emplace_back(1);
   } else {
-    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
-    rest_->to_state(u.get(), x.get());
-    all = equilibrium_stability(*system_, x.get());
+    all = equilibrium_stability(*system_, curve_.state(*system_, whole).get());
     for (const auto& w : all.mesh_waves) at.mesh_wave = std::max(at.mesh_wave, w.imag());
-    const double omega = seed_.event == solve::Event::hopf ? problem_->inner(whole)(0) : 0;
+    const double omega = seed_.event == solve::Event::hopf ? curve_.problem->inner(whole)(0) : 0;
     critical.emplace_back(0, omega);
     if (omega != 0) critical.emplace_back(0, -omega);
   }
@@ -65,11 +62,8 @@ void LocusFollower::put_others(Vec whole, Row& at) {
 }
 
 std::vector<double> LocusFollower::films(Vec whole) const {
-  const core::Vector u = problem_->branch_part(whole);
-  if (cycles_) return least_films(cycles_->gather(u.get()), *system_);
-  core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
-  rest_->to_state(u.get(), x.get());
-  return system_->observe(x.get()).film_thickness;
+  if (curve_.cycles) return least_films(curve_.cycle(whole), *system_);
+  return system_->observe(curve_.state(*system_, whole).get()).film_thickness;
 }
 
 }  // namespace whirl::study
