@@ -18,6 +18,9 @@ void members(auto& archive, solve::LocatedEvent& e) {
   archive(e.event, e.parameter, e.bracket, e.sensitivity, e.critical, e.located, e.refined, e.quadratic,
           e.unstable_before, e.unstable_after, e.slope, e.after);
 }
+void members(auto& archive, solve::BranchEnd& e) {
+  archive(e.reason, e.completed, e.points, e.parameter, e.limited, e.bracket);
+}
 /// But for unknowns and tangents.
 void members(auto& archive, solve::BranchMemory& m) {
   archive(m.before.point, m.earlier, m.visited, m.folds, m.met, m.held, m.warm, m.born, m.ranges, m.between);

@@ -1,6 +1,7 @@
 #pragma once
 // Structs as rows of numbers, which ranks send each other and checkpoints hold.
 
+#include <Eigen/Core>
 #include <array>
 #include <complex>
 #include <cstddef>
@@ -29,7 +30,7 @@ void show(Archive& archive, T& x) {
 ///     void members(auto& archive) { archive(values, rounding); }
 ///
 /// or, of a struct of another room, members(archive, x) beside it. Members are numbers, enums, texts, complex numbers,
-/// arrays, vectors, pairs, optionals, and structs that have such a function.
+/// arrays, vectors, matrices, pairs, optionals, and structs that have such a function.
 class RowWriter {
 public:
   void operator()(const auto&... all) { (put(all), ...); }
@@ -49,6 +50,11 @@ private:
   void put(const std::vector<T>& all) {
     put(all.size());
     for (const T& x : all) put(x);
+  }
+  template <int rows, int columns>
+  void put(const Eigen::Matrix<double, rows, columns>& m) {
+    (*this)(m.rows(), m.cols());
+    row.insert(row.end(), m.data(), m.data() + m.size());
   }
   template <class T, std::size_t n>
   void put(const std::array<T, n>& all) {
@@ -97,6 +103,13 @@ private:
     take(n);
     all.resize(n);
     for (T& x : all) take(x);
+  }
+  template <int rows, int columns>
+  void take(Eigen::Matrix<double, rows, columns>& m) {
+    Eigen::Index down = 0, across = 0;
+    (*this)(down, across);
+    m.resize(down, across);
+    for (Eigen::Index k = 0; k < m.size(); ++k) take(m.data()[k]);
   }
   template <class T, std::size_t n>
   void take(std::array<T, n>& all) {

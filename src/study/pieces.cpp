@@ -21,7 +21,7 @@ namespace {
 
 constexpr double least_seconds = 0.5;  // between two files
 
-constexpr int format = 6;
+constexpr int format = 7;
 
 std::string name_of_rows(std::size_t k) {
   return "vector " + std::to_string(k);

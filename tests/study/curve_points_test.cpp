@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "study/packed.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -48,10 +50,8 @@ TEST(SpreadPoints, CoverAGrowingCurveWithBothEnds) {
 
 TEST(SpreadPoints, SurviveACheckpoint) {
   const SpreadPoints before = grown(75);
-  io::Group group;
-  before.write(group);
   SpreadPoints after(8);
-  after.read(group);
+  unpack(pack(before), after);
   SpreadPoints whole = before;
   for (std::size_t k = 75; k < 90; ++k) {
     whole.add(point(k, 10 + 0.01 * static_cast<double>(k)));

@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <string>
 #include <utility>
-
-#include "study/cycle/cycle_record.hpp"
 
 namespace whirl::study {
 
@@ -37,35 +33,6 @@ std::vector<CurvePoint> SpreadPoints::all() const {
   std::vector<CurvePoint> out = spread_;
   out.insert(out.end(), last_.begin(), last_.end());
   return out;
-}
-
-void SpreadPoints::write(io::Group& group) const {
-  group.set("apart", apart_);
-  group.set("spread", static_cast<std::int64_t>(spread_.size()));
-  const std::vector<CurvePoint> points = all();
-  group.set("points", static_cast<std::int64_t>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    io::Group& one = group.child(std::to_string(k));
-    write_cycle(one.child("cycle"), points[k].cycle);
-    one.put("inner", std::vector<double>(points[k].inner.begin(), points[k].inner.end()), "1", "inner unknowns");
-    one.set("second", points[k].second);
-    one.set("arclength", points[k].arclength);
-    one.set("row", static_cast<std::int64_t>(points[k].row));
-  }
-}
-
-void SpreadPoints::read(const io::Group& group) {
-  clear();
-  apart_ = group.real("apart");
-  const long points = group.integer("points"), spread = group.integer("spread");
-  for (long k = 0; k < points; ++k) {
-    const io::Group& one = group.group(std::to_string(k));
-    const std::vector<double>& inner = one.reals("inner");
-    CurvePoint point{read_cycle(one.group("cycle")),
-                     Eigen::Map<const Eigen::VectorXd>(inner.data(), static_cast<Eigen::Index>(inner.size())),
-                     one.real("second"), one.real("arclength"), static_cast<std::size_t>(one.integer("row"))};
-    (k < spread ? spread_ : last_).push_back(std::move(point));
-  }
 }
 
 std::vector<CurvePoint> evenly_spread(std::vector<CurvePoint> points, std::size_t count) {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "whirl/io/record.hpp"
 #include "whirl/solve/cycle/cycle.hpp"
 
 namespace whirl::study {
@@ -17,6 +16,9 @@ struct CurvePoint {
   double second = 0;      ///< scaled
   double arclength = 0;   ///< from the start, in the scaled parameters
   std::size_t row = 0;    ///< points of the curve between the start and this one
+  void members(auto& archive) {
+    archive(cycle.mesh, cycle.x, cycle.period, cycle.parameter, inner, second, arclength, row);
+  }
 };
 
 /// Points about evenly spread over a curve whose length is not known before: wherever there are too many, the distance
@@ -27,8 +29,7 @@ public:
   void add(CurvePoint point);
   void clear();
   [[nodiscard]] std::vector<CurvePoint> all() const;
-  void write(io::Group& group) const;
-  void read(const io::Group& group);
+  void members(auto& archive) { archive(apart_, spread_, last_); }
 
 private:
   std::size_t most_;

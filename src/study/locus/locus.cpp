@@ -199,10 +199,10 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   // An interrupted run goes on from where it was; what it started from is put back below.
   const Located born = seed_;
   const double start_second = start_second_;
-  const std::optional<io::Group> left = interrupted();
+  const bool left = std::exchange(interrupted_, false);
   if (left) {
-    seed_.cycle = read_cycle(left->group("cycle"));
-    start_second_ = left->real("second");
+    seed_.cycle = read_cycle(pieces_->state().group("cycle"));
+    start_second_ = pieces_->state().real("second");
   }
   begin();
   core::Vector start = std::move(curve_.whole);
@@ -216,7 +216,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   spread_.clear();
   std::optional<solve::Restart> restart;
   if (left) {
-    restart = restore(*left, start.get());
+    restart = restore(start.get());
     core::check(VecCopy(restart->u.get(), start.get()));
     // Whether the first step passes amplitude zero is seen by comparison with the last point.
     if (curve_.autonomous()) last_swing_ = swing(start.get());
@@ -332,14 +332,9 @@ StudyResult LocusFollower::run() {
   const double from = range.from / second_scale_, to = range.to / second_scale_;
   solve::BranchEnd here;
   pieces_ = std::make_unique<Pieces>(context_.results, context_.resume);
-  const io::Group& kept = pieces_->state();
-  second_way_ = kept.has_group("done");
-  if (second_way_) {
-    done_ = read_rows(kept.group("done"));
-    done_spread_.read(kept.group("done_spread"));
-    done_end_ = {kept.text("done_reason"), kept.integer("done_completed") != 0,
-                 static_cast<int>(kept.integer("done_points")), kept.real("done_parameter")};
-  } else {
+  interrupted_ = pieces_->state().has_dataset("follower");
+  if (interrupted_) unpack(pieces_->state().reals("follower"), *this);
+  if (!second_way_) {
     done_ = follow(to, from, done_end_);
     if (done_end_.points == 0) throw core::NotConverged(done_end_.reason);
     std::swap(done_spread_, spread_);

@@ -238,7 +238,7 @@ void LocusFollower::put_bars(io::CodimensionTwo& c, Vec whole, double location) 
 namespace {
 
 // Direction of the curve at each of its points, by the chord between its neighbours: unit length, scaled.
-std::vector<Eigen::Vector2d> directions(const std::vector<Eigen::Vector2d>& places) {
+std::vector<Eigen::Vector2d> directions_of(const std::vector<Eigen::Vector2d>& places) {
   std::vector<Eigen::Vector2d> out;
   for (std::size_t k = 0; k < places.size(); ++k)
     out.push_back((places[std::min(k + 1, places.size() - 1)] - places[k > 0 ? k - 1 : 0]).normalized());
@@ -250,7 +250,7 @@ std::vector<Eigen::Vector2d> directions(const std::vector<Eigen::Vector2d>& plac
 std::vector<RowBar> LocusFollower::bars_of(const std::vector<Row>& rows, std::size_t start) {
   std::vector<Eigen::Vector2d> places;
   for (const Row& row : rows) places.emplace_back(row.first / first_scale_, row.second / second_scale_);
-  const std::vector<Eigen::Vector2d> along = directions(places);
+  const std::vector<Eigen::Vector2d> along = directions_of(places);
   std::vector<RowBar> out(rows.size());
   if (rows.size() < 2) return out;
   std::vector<double> length(rows.size(), 0.0);

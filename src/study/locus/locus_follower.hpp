@@ -13,6 +13,7 @@
 
 #include "study/bars/error_bar.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/branch_state.hpp"
 #include "study/common.hpp"
 #include "study/cycle/cycle_branch.hpp"
 #include "study/cycle/cycle_follower.hpp"
@@ -40,6 +41,7 @@ struct Row {
   int others_unstable = 0;
   double mesh_wave = 0;  ///< frequency of a growing wave of a film's mesh, which is left out; zero: none
   static constexpr double unknown_frequency = -1;  ///< of a wave that multipliers show
+  void members(auto& archive) { archive(first, second, period, angle, amplitude, others_unstable, mesh_wave); }
 };
 
 /// The bar of a point of a curve, not a number where it is unknown.
@@ -52,9 +54,6 @@ struct RowBar {
 /// Share of a parameter in the normal of a curve, both scaled, below which that parameter has no bar of its own: the
 /// curve runs along it.
 inline constexpr double least_share = 0.1;
-
-void write_rows(io::Group& group, const std::vector<Row>& rows);
-[[nodiscard]] std::vector<Row> read_rows(const io::Group& group);
 
 /// Coefficients of normal forms on the curve, a little behind and ahead of a point of it, and what lies between the two
 /// in the scaled parameters.
@@ -88,6 +87,11 @@ class LocusFollower {
 public:
   LocusFollower(Context& context, const LocusOptions& options);
   StudyResult run();
+  /// What a checkpoint holds beside the last point.
+  void members(auto& archive) {
+    archive(second_way_, done_, done_spread_, done_end_, rows_, start_, inner_sign_, length_, spread_, zeros_,
+            seed_.sensitivity, generalised_);
+  }
 
 private:
   static constexpr std::size_t points_each_way = 8;  // that are kept with their solutions
@@ -161,9 +165,7 @@ private:
   void suspect(double from, double to, const std::string& reason);
   // Points in one direction from the start, without it.
   std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
-  // What the checkpoint of an interrupted run holds of the present direction.
-  [[nodiscard]] std::optional<io::Group> interrupted() const;
-  [[nodiscard]] solve::Restart restore(const io::Group& state, Vec like);
+  [[nodiscard]] solve::Restart restore(Vec like);
   void save(const solve::ResumePoint& at, Vec whole, Vec tangent);
 
   Context& context_;
@@ -180,8 +182,9 @@ private:
   std::unique_ptr<system::RotorSystem> system_;
   CurveProblem curve_;
   std::unique_ptr<Pieces> pieces_;
-  bool second_way_ = false;  // the first direction is done:
-  std::vector<Row> done_;    // its points
+  bool interrupted_ = false;  // an earlier run, whose checkpoint the present direction goes on from
+  bool second_way_ = false;   // the first direction is done:
+  std::vector<Row> done_;     // its points
   solve::BranchEnd done_end_;
   std::vector<Row> rows_;  // of the present one
   double inner_sign_ = 0;  // of the inner unknown at its first point
@@ -193,7 +196,8 @@ private:
   std::vector<double> peak_times_;                                       // likewise
   // Generalised points that are confirmed: both parameters, and how far around was looked at, scaled.
   struct Confirmed {
-    double first, second, looked;
+    double first = 0, second = 0, looked = 0;
+    void members(auto& archive) { archive(first, second, looked); }
   };
   std::vector<Confirmed> generalised_;
   bool left_ = false, ended_ = false;
