@@ -10,6 +10,7 @@
 #include "study/equilibrium/equilibrium_event.hpp"
 #include "study/located.hpp"
 #include "study/pieces.hpp"
+#include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 
@@ -41,8 +42,7 @@ StudyResult converge(Context& context, const MeshConvergenceOptions& options, co
     found.parameter = origin.cycle.parameter / scale;
     found.sensitivity = origin.sensitivity;
     system->set_parameter(origin.cycle.parameter);
-    const std::vector<double> whole(origin.cycle.x.data(), origin.cycle.x.data() + origin.cycle.x.size());
-    const core::Vector x = resampled(*system, *system, whole);
+    const core::Vector x = state_in(*system, origin.cycle);
     const EquilibriumEvent event{
         *system, x.get(), found, scale, state_weight_of(branch), newton, {}, {}, [&](const auto& cells) {
           return plant_of(context, branch, cells);

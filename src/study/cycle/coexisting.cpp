@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "study/bars/summary_bars.hpp"
 #include "study/cycle/cycle_record.hpp"
 #include "study/make_plant.hpp"
+#include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
@@ -71,8 +73,7 @@ std::vector<solve::Cycle> coexisting_equilibria(system::Plant& plant, const Defl
   std::vector<solve::Cycle> out;
   for (const auto& u : found) {
     problem.to_state(u.get(), x.get());
-    const std::vector<double> whole = plant.gather(x.get());
-    out.push_back({{0, 1}, Eigen::Map<const Eigen::VectorXd>(whole.data(), plant.size()), 0, parameter});
+    out.push_back(as_cycle(plant, x.get(), parameter));
   }
   return out;
 }
@@ -116,17 +117,10 @@ std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summ
                                         const std::function<std::vector<solve::Cycle>()>& find,
                                         const SharedRows& like) {
   std::vector<solve::Cycle> further;
-  const auto lost = [&](const core::Error& e) {
+  std::string reason;
+  if (!has_answer([&] { further = find(); }, &reason))
     summary.warnings.push_back(
-        fmt::format("deflation was given up, other solutions at the start are not known: {}", e.what()));
-  };
-  try {
-    further = find();
-  } catch (const core::NotConverged& e) {
-    lost(e);
-  } catch (const core::DomainError& e) {
-    lost(e);
-  }
+        fmt::format("deflation was given up, other solutions at the start are not known: {}", reason));
   auto& all = group.child("solutions");
   all.set("count", static_cast<int>(further.size()));
   for (std::size_t k = 0; k < further.size(); ++k) write_cycle(all.child(fmt::format("{}", k + 2)), further[k], like);
@@ -140,16 +134,6 @@ std::vector<io::Group> solutions_in(const io::Group& group) {
   const io::Group& all = group.group("solutions");
   for (long k = 0; k < all.integer("count"); ++k) out.push_back(all.group(fmt::format("{}", k + 2)));
   return out;
-}
-
-std::string name_of_solution(const std::string& name, std::size_t k) {
-  return fmt::format("{} solution {}", name, k);
-}
-
-bool may_be_solution(const std::string& name, std::string_view file) {
-  const std::string second = io::plain_name(name_of_solution(name, 2)), stem = second.substr(0, second.size() - 1);
-  return file.size() > stem.size() && file.starts_with(stem) &&
-         file.find_first_not_of("0123456789", stem.size()) == std::string_view::npos;
 }
 
 }  // namespace whirl::study

@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "study/parameter.hpp"
@@ -30,17 +29,12 @@ namespace whirl::study {
 [[nodiscard]] solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& scheme, int turns, int k);
 
 /// What `find` finds into `group`/solutions, and the number of solutions with the first one as the value `solutions`. A
-/// search that ends in core::NotConverged or core::DomainError found nothing, which a warning says: the branch itself
+/// search that ends in no answer (has_answer()) found nothing, which a warning says: the branch itself
 /// stays. `like` as of write_cycle(). Returns what was found.
 std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summary,
                                         const std::function<std::vector<solve::Cycle>()>& find,
                                         const SharedRows& like = {});
 /// The cycles of put_solutions(), for read_cycle(), in what it was given.
 [[nodiscard]] std::vector<io::Group> solutions_in(const io::Group& group);
-
-/// Name of the branch that begins at the k-th solution (the first is the branch's own) of the study `name`.
-[[nodiscard]] std::string name_of_solution(const std::string& name, std::size_t k);
-/// True if the files of such a branch may be called `file` (io::plain_name).
-[[nodiscard]] bool may_be_solution(const std::string& name, std::string_view file);
 
 }  // namespace whirl::study

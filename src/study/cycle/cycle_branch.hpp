@@ -62,13 +62,13 @@ public:
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] bool may_add(std::string_view other) const override;
+  /// Whether the branch born at this flip, 1-based, is wanted.
+  [[nodiscard]] bool follows(std::size_t flip) const;
   [[nodiscard]] StudyResult run(Context& context) override;
   [[nodiscard]] io::Brief brief(const StudyResult& result, std::span<const io::StudySummary> before) const override;
   [[nodiscard]] std::vector<std::unique_ptr<Study>> further(const io::Group& result) const override;
 };
 
-/// Name of the branch born at the k-th flip (1-based) of the study `name` with `follow_flips`, in the results.
-[[nodiscard]] std::string name_of_doubled(const std::string& name, std::size_t k);
 /// The options of the branch called `name` if that is `study` itself or one born at its flips; nothing otherwise.
 [[nodiscard]] std::optional<CycleBranchOptions> branch_called(const Study& study, const std::string& name);
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "study/added_branch.hpp"
 #include "study/bars/beyond.hpp"
 #include "study/bars/branch_brief.hpp"
 #include "study/bars/film_limit.hpp"
@@ -27,6 +28,7 @@
 #include "study/make_plant.hpp"
 #include "study/pieces.hpp"
 #include "study/service_speeds.hpp"
+#include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -150,10 +152,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   solve::EquilibriumProblem problem(*system, scale, state_weight);
   core::Vector u = problem.make_unknown(), x = core::make_vector(system->comm(), system->local_size(), PETSC_DETERMINE);
   if (first) {
-    const core::WriteArray to(x.get());
-    PetscInt begin = 0;
-    check(VecGetOwnershipRange(x.get(), &begin, nullptr));
-    for (PetscInt i = 0; i < to.size(); ++i) to[i] = first->x(begin + i, 0);
+    x = state_in(*system, *first);
   } else if (system->parameter_is_speed()) {
     Walker walker(*system);
     check(VecCopy(walker.at(range.from), x.get()));
@@ -191,12 +190,6 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   OpenBores bores(context.machine);
   MarginSlope margins;
   SpreadPoints spread(8);  // for the searches for a contact
-  // The state x as a cycle of one point.
-  const auto at_rest = [&](double period, double parameter) {
-    const std::vector<double> whole = system->gather(x.get());
-    const auto n = static_cast<Eigen::Index>(whole.size());
-    return solve::Cycle{{0, 1}, Eigen::Map<const Eigen::VectorXd>(whole.data(), n), period, parameter};
-  };
   double arclength = 0;
   MissedModes missed;
   MeshWaves waves;
@@ -228,7 +221,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     if (!point.between) margins.add(point.parameter, films.margin(seen.film_thickness));
     arclength += point.step;
     if (films.exists() && !point.between)
-      spread.add({at_rest(0, point.parameter), {}, 0, arclength, static_cast<std::size_t>(point.index)});
+      spread.add(
+          {as_cycle(*system, x.get(), point.parameter), {}, 0, arclength, static_cast<std::size_t>(point.index)});
     verdict.add(point.parameter, class_of(s), s.unstable());
     missed.add(s.missed);
     waves.add(point.parameter, s.mesh_waves);
@@ -274,7 +268,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     results.summary().bifurcations.push_back(b);
     if (is_followed(context, results.summary().name)) {
       problem.to_state(v, x.get());
-      located.push_back({found.event, found.critical, at_rest(b.period_s, found.parameter * scale), found.sensitivity});
+      located.push_back({found.event, found.critical, as_cycle(*system, x.get(), found.parameter * scale, b.period_s),
+                         found.sensitivity});
     }
   };
   callbacks.drawn = [&](Vec v) {
@@ -353,30 +348,10 @@ io::Brief brief_of_equilibria(const StudyResult& result) {
   return brief;
 }
 
-// The branch that begins at an equilibrium beside the first one of another branch.
-class BesideBranch final : public Study {
-public:
-  BesideBranch(std::string name, EquilibriumBranchOptions options, solve::Cycle first)
-      : name_(std::move(name)), options_(std::move(options)), first_(std::move(first)) {}
-  [[nodiscard]] std::string_view kind() const override { return EquilibriumBranch::key; }
-  [[nodiscard]] std::string name() const override { return name_; }
-  void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
-  [[nodiscard]] StudyResult run(Context& context) override { return follow_equilibria(context, options_, &first_); }
-  [[nodiscard]] io::Brief brief(const StudyResult& result,
-                                std::span<const io::StudySummary> /*before*/) const override {
-    return brief_of_equilibria(result);
-  }
-
-private:
-  std::string name_;
-  EquilibriumBranchOptions options_;
-  solve::Cycle first_;
-};
-
 }  // namespace
 
 bool EquilibriumBranch::may_add(std::string_view other) const {
-  return options.parameter.deflation && may_be_solution(name(), other);
+  return options.parameter.deflation && number_in(other, io::plain_name(name_of_solution(name(), 2))).has_value();
 }
 
 StudyResult EquilibriumBranch::run(Context& context) {
@@ -392,7 +367,10 @@ std::vector<std::unique_ptr<Study>> EquilibriumBranch::further(const io::Group& 
   EquilibriumBranchOptions own = options;
   own.parameter.deflation.reset();
   for (std::size_t k = 2; const auto& first : solutions_in(result))
-    beside.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), own, read_cycle(first)));
+    beside.push_back(std::make_unique<AddedBranch>(
+        key, name_of_solution(name(), k++),
+        [own, first = read_cycle(first)](Context& context) { return follow_equilibria(context, own, &first); },
+        brief_of_equilibria));
   return beside;
 }
 

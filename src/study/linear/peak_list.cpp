@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "study/linear/linear_brief.hpp"
+#include "study/linear/separation.hpp"
 
 namespace whirl::study {
 
