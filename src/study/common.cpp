@@ -301,6 +301,23 @@ void put_groups(io::StudySummary& summary, const std::optional<system::Dimension
   summary.set("nondimensional.sommerfeld_times_speed", groups->load / groups->bearings, "1");
 }
 
+solve::ContinuationOptions continuation_of(const Parameter& p, double scale, double first, double longest) {
+  const double width = std::abs(p.range.to - p.range.from) / scale;
+  solve::ContinuationOptions out;
+  out.initial_step = p.step ? p.step->initial.value / scale : width / first;
+  out.min_step = p.step ? p.step->min.value / scale : width / 1e6;
+  out.max_step = p.step ? p.step->max.value / scale : width / longest;
+  out.beta_1 = p.beta_1;
+  out.beta_2 = p.beta_2;
+  const bool natural = p.continuation == Following::natural;
+  out.kind = natural ? solve::Continuation::natural : solve::Continuation::arclength;
+  return out;
+}
+
+double state_weight_of(const solve::ContinuationOptions& continuation) {
+  return std::pow(continuation.max_step / 0.5, 2);
+}
+
 std::string branch_status(const solve::BranchEnd& end, const std::string& unit) {
   if (end.completed) return "completed";
   return fmt::format("ended at {:.6g} {}: {}", end.parameter, unit, end.reason);

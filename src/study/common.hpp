@@ -82,10 +82,13 @@ void put_places(io::Group& group, const system::Machine& machine, const system::
 void put_groups(io::StudySummary& summary, const system::Train& train);
 void put_groups(io::StudySummary& summary, const std::optional<system::DimensionlessGroups>& groups);
 
-/// The same word of the solver.
-[[nodiscard]] inline solve::Continuation kind_of(Following f) {
-  return f == Following::natural ? solve::Continuation::natural : solve::Continuation::arclength;
-}
+/// How a branch goes over a parameter in units of `scale` (SI), but for its ends: as `p` says, or with these parts of
+/// its range as first and as longest step.
+[[nodiscard]] solve::ContinuationOptions continuation_of(const Parameter& p, double scale, double first,
+                                                         double longest);
+/// The weight of the states in the arclength: a change of the root mean square state by half a clearance counts as one
+/// longest step.
+[[nodiscard]] double state_weight_of(const solve::ContinuationOptions& continuation);
 
 /// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
 [[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);

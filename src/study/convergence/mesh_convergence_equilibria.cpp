@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "study/bifurcation.hpp"
+#include "study/common.hpp"
 #include "study/convergence/shared_convergence.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
 #include "study/located.hpp"
@@ -43,10 +44,15 @@ StudyResult converge(Context& context, const MeshConvergenceOptions& options, co
     found.sensitivity = origin.sensitivity;
     system->set_parameter(origin.cycle.parameter);
     const core::Vector x = state_in(*system, origin.cycle);
-    const EquilibriumEvent event{
-        *system, x.get(), found, scale, state_weight_of(branch), newton, {}, {}, [&](const auto& cells) {
-          return plant_of(context, branch, cells);
-        }};
+    const EquilibriumEvent event{*system,
+                                 x.get(),
+                                 found,
+                                 scale,
+                                 state_weight_of(continuation_of(branch)),
+                                 newton,
+                                 {},
+                                 {},
+                                 [&](const auto& cells) { return plant_of(context, branch, cells); }};
     std::vector<double> value{found.parameter}, frequency{std::abs(found.critical.imag())}, seconds{0};
     for (int level = 1; level <= options.doublings; ++level) {
       const double times = std::exp2(level), begin = results.seconds();

@@ -51,15 +51,9 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
       keeps_located_(is_followed(context, context.results.summary().name)),
       limits_(context, context.results.summary().name) {
   const auto& range = options_.parameter.range;
-  const double width = std::abs(range.to - range.from) / scale_;
+  continuation_ = continuation_of(options_.parameter, scale_, 200, 30);
   continuation_.from = (options_.start ? options_.start->value : range.from) / scale_;
   continuation_.to = range.to / scale_;
-  continuation_.initial_step = options_.parameter.step ? options_.parameter.step->initial.value / scale_ : width / 200;
-  continuation_.min_step = options_.parameter.step ? options_.parameter.step->min.value / scale_ : width / 1e6;
-  continuation_.max_step = options_.parameter.step ? options_.parameter.step->max.value / scale_ : width / 30;
-  continuation_.beta_1 = options_.parameter.beta_1;
-  continuation_.beta_2 = options_.parameter.beta_2;
-  continuation_.kind = kind_of(options_.parameter.continuation);
   continuation_.max_points = options_.max_points;
   continuation_.picture_tolerance = options_.picture_tolerance;
   const bool adapt = options_.method == CycleBranchOptions::Method::collocation && options_.adapt_mesh;

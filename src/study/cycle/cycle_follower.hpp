@@ -116,8 +116,7 @@ private:
   /// as many steps in time.
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::Plant& system, int turns,
                                                                      std::vector<double> mesh, double finer) const;
-  /// A change of the root mean square state by half a clearance counts as one longest step.
-  [[nodiscard]] double state_weight() const { return std::pow(continuation_.max_step / 0.5, 2); }
+  [[nodiscard]] double state_weight() const { return state_weight_of(continuation_); }
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> twice_the_period(const FlipSeed& seed, double finer = 1) const;
   [[nodiscard]] solve::Restart leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const;
   [[nodiscard]] core::Vector start(const solve::PeriodicProblem& problem) const;

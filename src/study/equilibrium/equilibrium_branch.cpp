@@ -50,10 +50,17 @@ std::unique_ptr<system::Plant> plant_of(const Context& context, const Equilibriu
   return make_plant(plan(context, Sharing::meshes).space, context.machine, wanted);
 }
 
-double state_weight_of(const EquilibriumBranchOptions& o) {
+solve::ContinuationOptions continuation_of(const EquilibriumBranchOptions& o) {
   const auto& range = o.parameter.range;
-  const double scale = deck::number_to_si(1, range.unit), width = std::abs(range.to - range.from) / scale;
-  return std::pow((o.parameter.step ? o.parameter.step->max.value / scale : width / 25) / 0.5, 2);
+  const double scale = deck::number_to_si(1, range.unit);
+  solve::ContinuationOptions out = continuation_of(o.parameter, scale, 100, 25);
+  out.from = range.from / scale;
+  out.to = range.to / scale;
+  out.max_points = o.max_points;
+  out.picture_tolerance = o.picture_tolerance;
+  out.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
+  out.newton.max_iterations = 20;
+  return out;
 }
 
 namespace {
@@ -130,25 +137,12 @@ void put_limits(io::StudySummary& summary, const BranchVerdict& verdict, const s
 StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& options, const solve::Cycle* first) {
   const auto& range = options.parameter.range;
   const std::string unit = range.unit;
-  const double scale = deck::number_to_si(1, unit), width = std::abs(range.to - range.from) / scale;
-  solve::ContinuationOptions continuation;
-  continuation.from = range.from / scale;
-  continuation.to = range.to / scale;
-  const auto& step = options.parameter.step;
-  continuation.initial_step = step ? step->initial.value / scale : width / 100;
-  continuation.min_step = step ? step->min.value / scale : width / 1e6;
-  continuation.max_step = step ? step->max.value / scale : width / 25;
-  continuation.beta_1 = options.parameter.beta_1;
-  continuation.beta_2 = options.parameter.beta_2;
-  continuation.kind = kind_of(options.parameter.continuation);
-  continuation.max_points = options.max_points;
-  continuation.picture_tolerance = options.picture_tolerance;
-  continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
-  continuation.newton.max_iterations = 20;
+  const double scale = deck::number_to_si(1, unit);
+  solve::ContinuationOptions continuation = continuation_of(options);
 
   const Layout layout = plan(context, Sharing::meshes);
   const auto system = plant_of(context, options);
-  const double state_weight = state_weight_of(options);
+  const double state_weight = state_weight_of(continuation);
   solve::EquilibriumProblem problem(*system, scale, state_weight);
   core::Vector u = problem.make_unknown(), x = core::make_vector(system->comm(), system->local_size(), PETSC_DETERMINE);
   if (first) {

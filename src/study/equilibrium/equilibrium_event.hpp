@@ -74,12 +74,11 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at);
 /// cannot be had there. Collective.
 [[nodiscard]] std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells);
 
-/// The system of a branch of equilibria, and the weight of its states in the arclength: a change of the root mean
-/// square state by half a clearance counts as one longest step. Collective.
+/// The system of a branch of equilibria, and how the branch is followed. Collective.
 [[nodiscard]] std::unique_ptr<system::Plant> plant_of(const Context& context, const EquilibriumBranchOptions& options,
                                                       const std::array<double, 2>& film_cells = {1, 1},
                                                       int shaft_parts = 1);
-[[nodiscard]] double state_weight_of(const EquilibriumBranchOptions& options);
+[[nodiscard]] solve::ContinuationOptions continuation_of(const EquilibriumBranchOptions& options);
 
 /// Puts `coefficient` with the verdict on it into `b`: `negative` or `positive`, or "undetermined" where the bar
 /// contains zero.

@@ -76,13 +76,9 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   first_scale_ = width(first_range_);
   second_scale_ = width(options.second.range);
   start_second_ = value_of(context.machine, options.second.path);
-  const auto& step = options.second.step;
-  continuation_.initial_step = step ? step->initial.value / second_scale_ : 1.0 / 200;
-  continuation_.min_step = step ? step->min.value / second_scale_ : 1e-6;
-  continuation_.max_step = step ? step->max.value / second_scale_ : 1.0 / 30;
+  continuation_ = continuation_of(options.second, second_scale_, 200, 30);
   continuation_.max_points = options.max_points;
   continuation_.picture_tolerance = options.picture_tolerance;
-  continuation_.kind = kind_of(options.second.continuation);
   continuation_.location_tolerance = 1e-7;
   continuation_.adapt_every = of_cycles_ && of_cycles_->adapt_mesh ? of_cycles_->adapt_every : 0;
   if (of_cycles_) {
@@ -135,8 +131,7 @@ solve::CycleOptions LocusFollower::cycle_options() const {
   c.turns = o.period;
   c.autonomous = o.origin == CycleBranchOptions::Origin::hopf;
   c.parameter_scale = first_scale_;
-  // A change of the root mean square state by half a clearance counts as one longest step.
-  c.state_weight = std::pow(continuation_.max_step / 0.5, 2);
+  c.state_weight = state_weight_of(continuation_);
   c.base_intervals = o.intervals;
   c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
   return c;
@@ -159,8 +154,7 @@ CurveProblem LocusFollower::problem_at(const CurvePoint& point, std::complex<dou
     out.branch = out.cycles.get();
     u = out.cycles->scatter(point.cycle);
   } else {
-    out.rest =
-        std::make_unique<solve::EquilibriumProblem>(system, first_scale_, std::pow(continuation_.max_step / 0.5, 2));
+    out.rest = std::make_unique<solve::EquilibriumProblem>(system, first_scale_, state_weight_of(continuation_));
     out.branch = out.rest.get();
     u = out.rest->make_unknown();
     out.rest->from_state(state_in(system, point.cycle).get(), point.cycle.parameter, u.get());
