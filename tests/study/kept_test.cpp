@@ -113,11 +113,11 @@ TEST(Kept, TheBarOfAContactHoldsItsMeshes) {
   slope.add(3, 0);
   EXPECT_EQ(slope.value(), -1);
   EXPECT_EQ(slope.step(), 0.5);
-  std::vector<ContactThere> there;
+  std::vector<Sample> there;
   for (const double s : {0.5, 2.0}) {
     const auto margin = [s](double p) { return 2 * (3 + 0.1 * (s * s - 1) - p); };
     there.push_back({Axis::around, s, contact_there(3, slope, margin)});
-    EXPECT_NEAR(there.back().place, 3 + 0.1 * (s * s - 1), 1e-12);
+    EXPECT_NEAR(there.back().value, 3 + 0.1 * (s * s - 1), 1e-12);
   }
   io::StudySummary summary;
   put_contact(summary, 3, "rad/s", 1e-6, {}, there);
@@ -127,7 +127,7 @@ TEST(Kept, TheBarOfAContactHoldsItsMeshes) {
   EXPECT_EQ(q.more.at("uncertainty_location"), 1e-6);
   EXPECT_NEAR(q.more.at("uncertainty"), 0.125001, 1e-12);
   // No solution on any other mesh: nobody knows.
-  for (ContactThere& m : there) m.place = io::no_value;
+  for (Sample& m : there) m.value = io::no_value;
   put_contact(summary, 3, "rad/s", 1e-6, {}, there);
   EXPECT_TRUE(std::isnan(summary.values.back().second.more.at("uncertainty")));
 }

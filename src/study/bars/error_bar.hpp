@@ -21,6 +21,13 @@ inline constexpr std::array<Axis, 4> all_axes{Axis::around, Axis::along, Axis::t
   return axis == Axis::around || axis == Axis::along;
 }
 
+/// A mesh that differs from the one in use in one direction.
+struct OtherMesh {
+  Axis axis = Axis::around;
+  std::array<double, 2> factor{1, 1};  ///< cells of all films over cells in use, before rounding
+  double spacing = 1;                  ///< over the spacing in use, after rounding
+};
+
 /// The same number on a mesh that differs in one direction; `spacing` is its spacing over that of the mesh in use. NaN:
 /// it could not be had there.
 struct Sample {

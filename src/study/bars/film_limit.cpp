@@ -135,13 +135,13 @@ double contact_there(double place, const MarginSlope& here, const std::function<
 namespace {
 
 // Whether refining moves the place farther each time: of meshes of one direction from the coarsest to the finest.
-bool runs_away(double place, std::vector<ContactThere> there) {
+bool runs_away(double place, std::vector<Sample> there) {
   there.push_back({there.front().axis, 1, place});
   std::sort(there.begin(), there.end(), [](const auto& a, const auto& b) { return a.spacing > b.spacing; });
   for (std::size_t k = 2; k < there.size(); ++k) {
     const double coarse =
-                     (there[k - 1].place - there[k - 2].place) / std::log(there[k - 2].spacing / there[k - 1].spacing),
-                 fine = (there[k].place - there[k - 1].place) / std::log(there[k - 1].spacing / there[k].spacing);
+                     (there[k - 1].value - there[k - 2].value) / std::log(there[k - 2].spacing / there[k - 1].spacing),
+                 fine = (there[k].value - there[k - 1].value) / std::log(there[k - 1].spacing / there[k].spacing);
     if (!(fine * coarse > 0 && std::abs(fine) >= std::abs(coarse))) return false;
   }
   return there.size() > 2;
@@ -150,20 +150,20 @@ bool runs_away(double place, std::vector<ContactThere> there) {
 }  // namespace
 
 void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, const MeshLaw& law,
-                 const std::vector<ContactThere>& there) {
+                 const std::vector<Sample>& there) {
   Bars bars({place}, law);
   bool with_time = false, away = false;
   std::vector<std::string> others;
-  for (const ContactThere& m : there) {
-    bars.add(m.axis, m.spacing, {m.place});
+  for (const Sample& m : there) {
+    bars.add(m.axis, m.spacing, {m.value});
     with_time |= m.axis == Axis::time;
-    others.push_back(std::isfinite(m.place) ? fmt::format("{:.4g} at {:.3g} times its spacing", m.place, m.spacing)
+    others.push_back(std::isfinite(m.value) ? fmt::format("{:.4g} at {:.3g} times its spacing", m.value, m.spacing)
                                             : fmt::format("not found at {:.3g} times its spacing", m.spacing));
   }
   for (const Axis axis : all_axes) {
-    std::vector<ContactThere> own;
-    for (const ContactThere& m : there)
-      if (m.axis == axis && std::isfinite(m.place)) own.push_back(m);
+    std::vector<Sample> own;
+    for (const Sample& m : there)
+      if (m.axis == axis && std::isfinite(m.value)) own.push_back(m);
     away = away || (!own.empty() && runs_away(place, own));
   }
   Bar bar = bars[0];

@@ -13,12 +13,6 @@
 
 namespace whirl::study {
 
-/// Where a branch comes to its contact on another mesh; not a number if that cannot be had.
-struct ContactThere {
-  Axis axis = Axis::around;
-  double spacing = 1, place = 0;
-};
-
 /// The limits of the places of a plant. Thicknesses are those of Plant::film_thickness().
 class FilmLimit {
 public:
@@ -73,7 +67,7 @@ private:
 /// the bar is unknown or longer than half the place. Thin films of soft liners have no limit on finer meshes: where
 /// each refinement moves the place farther than the one before, the bar is unknown for that reason.
 void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, const MeshLaw& law,
-                 const std::vector<ContactThere>& there);
+                 const std::vector<Sample>& there);
 
 /// One number for each of `places` places: the thickness, or not a number where there is no film.
 [[nodiscard]] std::vector<double> film_column(std::vector<double> thickness, std::size_t places);

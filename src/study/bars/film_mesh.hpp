@@ -15,12 +15,8 @@ namespace whirl::study {
 
 struct LayoutOptions;
 
-/// All films of a machine with other numbers of cells in one direction.
-struct FilmMesh {
-  Axis axis = Axis::around;
-  std::array<double, 2> factor{1, 1};  ///< cells over cells in use, before rounding
-  double spacing = 1;                  ///< over the spacing in use, after rounding
-};
+/// Of films, or of the shaft.
+using FilmMesh = OtherMesh;
 
 /// Half and double the cells of each direction that a film of the machine has a mesh in; of fewer than 24
 /// cells around or 14 along four times as many, too, because half of them shows little; two more between them where

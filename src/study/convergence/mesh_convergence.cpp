@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "study/bars/branch_brief.hpp"
+#include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
 #include "study/common.hpp"
 #include "study/convergence/shared_convergence.hpp"
@@ -136,19 +137,17 @@ StudyResult MeshConvergence::run(Context& context) {
     for (int level = static_cast<int>(now.value.size()); level <= options.doublings; ++level) {
       const double begin = results.seconds();
       auto fine = std::make_unique<Level>(context, branch, level);
-      const auto stopped = [&](const core::Error& e) {
-        note(fmt::format("bifurcation {} stopped at {} times the cells of the deck: {}", chosen[i], 1 << level,
-                         e.what()));
-      };
-      try {
-        const Relocated found = fine->follower->relocate(now.last, *coarse->follower, pieces.replay_log());
-        now.last = found.found;
-        now.bracket.push_back(found.bracket);
-      } catch (const core::NotConverged& e) {
-        stopped(e);
-        break;
-      } catch (const core::DomainError& e) {
-        stopped(e);
+      std::string reason;
+      const bool found = has_answer(
+          [&] {
+            const Relocated there = fine->follower->relocate(now.last, *coarse->follower, pieces.replay_log());
+            now.last = there.found;
+            now.bracket.push_back(there.bracket);
+          },
+          &reason);
+      if (!found) {
+        note(
+            fmt::format("bifurcation {} stopped at {} times the cells of the deck: {}", chosen[i], 1 << level, reason));
         break;
       }
       now.value.push_back(now.last.cycle.parameter / scale);

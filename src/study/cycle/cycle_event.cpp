@@ -60,23 +60,23 @@ CycleFollower::Rows CycleFollower::put_bars(io::Bifurcation& b, const solve::Loc
     doubt = doubt_of_steps(with("short normal form", steps.shorter), here.coefficient);
   }
   Bars bars(here.list(), law()), of_coefficient({here.coefficient}, law());
-  const std::vector<CycleMesh> all = meshes();
+  const std::vector<OtherMesh> all = meshes();
   const solve::Cycle direction = along(found, cycle);
   Rows elsewhere;
   for (auto first = all.begin(), end = first; first != all.end(); first = end) {
-    end = std::find_if(first, all.end(), [&](const CycleMesh& m) { return m.axis != first->axis; });
+    end = std::find_if(first, all.end(), [&](const OtherMesh& m) { return m.axis != first->axis; });
     // A verdict that is lost in one direction needs no others. Of finer films the coarser ones tell.
     const bool open = decided(here.coefficient, doubt);
-    const auto also = [&](const CycleMesh& m) { return open && (fold || m.axis == Axis::time || m.spacing > 1); };
+    const auto also = [&](const OtherMesh& m) { return open && (fold || m.axis == Axis::time || m.spacing > 1); };
     // Near contact the same cycle may leave the validity of the film on another mesh: no number there.
-    const auto numbers = [&](const CycleMesh& mesh) {
+    const auto numbers = [&](const OtherMesh& mesh) {
       const auto there = numbers_on(mesh, found, cycle, direction, also(mesh));
       return there ? there->list() : std::vector<double>{};
     };
     const Rows rows = on_each({first, end}, piece(fmt::format("direction {}", static_cast<int>(first->axis))), numbers);
     elsewhere.insert(elsewhere.end(), rows.begin(), rows.end());
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const CycleMesh& mesh = first[static_cast<std::ptrdiff_t>(k)];
+      const OtherMesh& mesh = first[static_cast<std::ptrdiff_t>(k)];
       bars.add(mesh.axis, mesh.spacing, rows[k]);
       if (!also(mesh) || !decided(here.coefficient, doubt)) continue;
       const double c = rows[k].empty() ? io::no_value : rows[k].back();
@@ -180,10 +180,10 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (seed) {
     const auto twice = twice_the_period(*seed);
     const solve::Restart leaving = leave_flip(*twice, *seed);
-    const auto elsewhere = [&](const CycleMesh& mesh) -> std::optional<Parabola> {
-      const std::vector<CycleMesh> all = meshes();
+    const auto elsewhere = [&](const OtherMesh& mesh) -> std::optional<Parabola> {
+      const std::vector<OtherMesh> all = meshes();
       const auto same = std::ranges::find_if(
-          all, [&](const CycleMesh& m) { return m.axis == mesh.axis && m.spacing == mesh.spacing; });
+          all, [&](const OtherMesh& m) { return m.axis == mesh.axis && m.spacing == mesh.spacing; });
       const auto k = static_cast<std::size_t>(same - all.begin());
       if (k >= on_meshes.size() || on_meshes[k].empty()) return {};
       return born_on(mesh, cycle, on_meshes[k].front());

@@ -207,14 +207,13 @@ void CycleFollower::report(const std::string& key, Vec u) {
   record_.report(key, orbit, problem_->orbit_scheme(), *system_, stability_of(*problem_, *system_), own);
   shafts_.append("at", cycle.parameter / scale_, orbit, problem_->orbit_scheme(), *system_);
   SummaryBars bars(own, law());
-  const std::vector<CycleMesh> all = meshes();
-  const Rows rows = on_each(all, fmt::format("report {} on mesh", key), [&](const CycleMesh& mesh) {
+  const std::vector<OtherMesh> all = meshes();
+  const Rows rows = on_each(all, fmt::format("report {} on mesh", key), [&](const OtherMesh& mesh) {
     io::StudySummary there;
     const auto answer = [&] {
       if (const auto other = corrected_on(mesh, cycle))
-        record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(),
-                       other->other ? *other->other : *system_,
-                       stability_of(*other->problem, other->other ? *other->other : *system_), there);
+        record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(), *other->system,
+                       stability_of(*other->problem, *other->system), there);
     };
     if (!has_answer(answer)) there = {};
     return bars.row(there);

@@ -43,16 +43,9 @@ struct Relocated {
   int solves = 0;      ///< cycles that were solved
 };
 
-/// A discretisation of a cycle that differs from the one in use in one direction.
-struct CycleMesh {
-  Axis axis = Axis::time;
-  double spacing = 1;                ///< over the spacing in use
-  std::array<double, 2> film{1, 1};  ///< cells of the films over those in use
-};
-
 /// The time meshes beside the one in use, if bars are wanted: half and twice the spacing or, where that cannot be, half
 /// and a quarter. Two meshes alone may agree by chance.
-[[nodiscard]] std::vector<CycleMesh> time_meshes(bool halves, const LayoutOptions& layout);
+[[nodiscard]] std::vector<OtherMesh> time_meshes(bool halves, const LayoutOptions& layout);
 /// Every other point of a mesh of time; empty if fewer than eight intervals would be left.
 [[nodiscard]] std::vector<double> merged(const std::vector<double>& mesh);
 
@@ -131,14 +124,14 @@ private:
   [[nodiscard]] std::optional<Parabola> parabola(solve::PeriodicProblem& problem, Vec u, Vec tangent) const;
   /// `elsewhere` is the parabola on another time mesh; without it the bar holds no time mesh.
   void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent, double sensitivity,
-                       const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere = {}) const;
+                       const std::function<std::optional<Parabola>(const OtherMesh&)>& elsewhere = {}) const;
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
   [[nodiscard]] double margin(const solve::Cycle& orbit, system::Plant& system) const;
   /// Of a point of the branch, for the slope at which it meets its limit.
   void add_margin(double parameter, const solve::Cycle& orbit);
   /// Where the branch comes to its contact at `place` (scaled) on other meshes; `last` is its last cycle.
-  [[nodiscard]] std::vector<ContactThere> contacts_there(const solve::Cycle& last, double place);
+  [[nodiscard]] std::vector<Sample> contacts_there(const solve::Cycle& last, double place);
   void doubt(BranchVerdict& verdict);
   /// Puts a pair that no mesh confirms among the suspicions instead.
   [[nodiscard]] bool left_as_doubtful(const io::Bifurcation& b, const solve::LocatedEvent& found);
@@ -190,37 +183,39 @@ private:
   /// What is known of the errors of films and time steps.
   [[nodiscard]] MeshLaw law() const;
   [[nodiscard]] double order_of_scheme() const;
-  [[nodiscard]] std::vector<CycleMesh> meshes() const;
+  [[nodiscard]] std::vector<OtherMesh> meshes() const;
   /// Whether the mesh of time, and not a number of steps in each interval, says how long steps are.
   [[nodiscard]] bool steps_are_intervals() const;
   /// The solver on another mesh; null where there is no such mesh.
-  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> problem_on(const CycleMesh& mesh, system::Plant& system,
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> problem_on(const OtherMesh& mesh, system::Plant& system,
                                                                    const solve::Cycle& cycle) const;
   /// A cycle on another mesh.
   struct Elsewhere {
     std::unique_ptr<system::Plant> other;  // null: the system is the one followed
+    system::Plant* system = nullptr;
+    solve::Cycle cycle;  // as it was carried over
     std::unique_ptr<solve::PeriodicProblem> problem;
     core::Vector u;
   };
-  [[nodiscard]] std::optional<Elsewhere> carried_to(const CycleMesh& mesh, const solve::Cycle& given) const;
+  [[nodiscard]] std::optional<Elsewhere> carried_to(const OtherMesh& mesh, const solve::Cycle& given) const;
   /// Solves it there at the same parameter, and linearises.
   [[nodiscard]] bool correct_there(Elsewhere& there, const solve::Cycle& given) const;
-  [[nodiscard]] std::optional<Elsewhere> corrected_on(const CycleMesh& mesh, const solve::Cycle& given) const;
+  [[nodiscard]] std::optional<Elsewhere> corrected_on(const OtherMesh& mesh, const solve::Cycle& given) const;
   /// Rows that `work` makes on each of these meshes, pieces `name 1`, ...: shared between the ranks where each holds a
   /// whole machine, which then solves cycles by itself. `work` asks nothing of the cycles that are followed.
   using Rows = std::vector<std::vector<double>>;
-  [[nodiscard]] Rows on_each(const std::vector<CycleMesh>& meshes, const std::string& name,
-                             const std::function<std::vector<double>(const CycleMesh&)>& work);
+  [[nodiscard]] Rows on_each(const std::vector<OtherMesh>& meshes, const std::string& name,
+                             const std::function<std::vector<double>(const OtherMesh&)>& work);
   /// Direction of the branch at its fold; nothing of other bifurcations.
   [[nodiscard]] solve::Cycle along(const solve::LocatedEvent& found, const solve::Cycle& given) const;
-  [[nodiscard]] std::optional<CycleNumbers> fold_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+  [[nodiscard]] std::optional<CycleNumbers> fold_on(const OtherMesh& mesh, const solve::LocatedEvent& found,
                                                     const solve::Cycle& given, const solve::Cycle& along) const;
   /// The same bifurcation on another mesh; nothing if it cannot be had.
-  [[nodiscard]] std::optional<CycleNumbers> numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+  [[nodiscard]] std::optional<CycleNumbers> numbers_on(const OtherMesh& mesh, const solve::LocatedEvent& found,
                                                        const solve::Cycle& cycle, const solve::Cycle& along,
                                                        bool with_coefficient) const;
   /// Of the branch of twice the period that is born at `flip`, whose scaled place there is given.
-  [[nodiscard]] std::optional<Parabola> born_on(const CycleMesh& mesh, const solve::Cycle& flip, double place) const;
+  [[nodiscard]] std::optional<Parabola> born_on(const OtherMesh& mesh, const solve::Cycle& flip, double place) const;
   [[nodiscard]] double normal_form(solve::PeriodicProblem& problem, system::Plant& system, solve::Event event,
                                    std::complex<double> critical, Vec u, double step) const;
   /// Puts the bars of the event that comes next into `b`; returns numbers_on() all meshes(), empty where they cannot be

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "study/bars/summary_bars.hpp"
 #include "study/cycle/cycle_follower.hpp"
@@ -40,22 +41,21 @@ bool CycleFollower::steps_are_intervals() const {
   return options_.method == CycleBranchOptions::Method::collocation || steps_of(options_) == 1;
 }
 
-std::vector<CycleMesh> time_meshes(bool halves, const LayoutOptions& layout) {
+std::vector<OtherMesh> time_meshes(bool halves, const LayoutOptions& layout) {
   if (layout.bars == BarsFrom::none) return {};
-  return {{Axis::time, 0.5, {1, 1}}, {Axis::time, halves ? 2 : 0.25, {1, 1}}};
+  return {{Axis::time, {1, 1}, 0.5}, {Axis::time, {1, 1}, halves ? 2 : 0.25}};
 }
 
-std::vector<CycleMesh> CycleFollower::meshes() const {
-  std::vector<CycleMesh> out = time_meshes(
+std::vector<OtherMesh> CycleFollower::meshes() const {
+  std::vector<OtherMesh> out = time_meshes(
       steps_are_intervals() ? !merged(problem_->mesh()).empty() : steps_of(options_) % 2 == 0, context_.layout);
   if (system_->has_film_mesh())
-    for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
-      out.push_back({m.axis, m.spacing, m.factor});
+    std::ranges::copy(film_meshes(context_.machine, context_.layout), std::back_inserter(out));
   return out;
 }
 
-CycleFollower::Rows CycleFollower::on_each(const std::vector<CycleMesh>& meshes, const std::string& name,
-                                           const std::function<std::vector<double>(const CycleMesh&)>& work) {
+CycleFollower::Rows CycleFollower::on_each(const std::vector<OtherMesh>& meshes, const std::string& name,
+                                           const std::function<std::vector<double>(const OtherMesh&)>& work) {
   const Layout shared = layout();
   const auto row = [&](std::size_t k) {
     if (shared.count == 1) return work(meshes[k]);
@@ -71,7 +71,7 @@ CycleFollower::Rows CycleFollower::on_each(const std::vector<CycleMesh>& meshes,
   return distribute_numbers(shared, meshes.size(), row, *pieces_, name);
 }
 
-std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMesh& mesh, system::Plant& system,
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const OtherMesh& mesh, system::Plant& system,
                                                                   const solve::Cycle& cycle) const {
   if (mesh.axis != Axis::time) return make_problem(system, options_.period, cycle.mesh, 1);
   if (mesh.spacing < 1) return make_problem(system, options_.period, cycle.mesh, 1 / mesh.spacing);
@@ -83,16 +83,16 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMes
 }
 
 // The given cycle carried over to another mesh.
-std::optional<CycleFollower::Elsewhere> CycleFollower::carried_to(const CycleMesh& mesh,
+std::optional<CycleFollower::Elsewhere> CycleFollower::carried_to(const OtherMesh& mesh,
                                                                   const solve::Cycle& given) const {
   Elsewhere out;
-  if (mesh.axis != Axis::time) out.other = make_system(mesh.film);
-  system::Plant& system = out.other ? *out.other : *system_;
-  const solve::Cycle cycle = on_film_of(system, given);
-  out.problem = problem_on(mesh, system, cycle);
+  if (mesh.axis != Axis::time) out.other = make_system(mesh.factor);
+  out.system = out.other ? out.other.get() : system_.get();
+  out.cycle = on_film_of(*out.system, given);
+  out.problem = problem_on(mesh, *out.system, out.cycle);
   if (!out.problem) return {};
-  if (autonomous()) out.problem->set_phase_reference(cycle);
-  out.u = out.problem->scatter(cycle);
+  if (autonomous()) out.problem->set_phase_reference(out.cycle);
+  out.u = out.problem->scatter(out.cycle);
   return out;
 }
 
@@ -106,7 +106,7 @@ bool CycleFollower::correct_there(Elsewhere& there, const solve::Cycle& given) c
   return true;
 }
 
-std::optional<CycleFollower::Elsewhere> CycleFollower::corrected_on(const CycleMesh& mesh,
+std::optional<CycleFollower::Elsewhere> CycleFollower::corrected_on(const OtherMesh& mesh,
                                                                     const solve::Cycle& given) const {
   auto there = carried_to(mesh, given);
   if (there && !correct_there(*there, given)) there.reset();
@@ -157,12 +157,12 @@ void CycleFollower::judge_multiplier(const Watched& at) {
   const double modulus = at.modulus;
   const solve::Cycle& cycle = at.cycle;
   Bars bars({modulus}, law());
-  const std::vector<CycleMesh> all = meshes();
-  const Rows rows = on_each(all, fmt::format("multiplier {} on mesh", at.index), [&](const CycleMesh& mesh) {
+  const std::vector<OtherMesh> all = meshes();
+  const Rows rows = on_each(all, fmt::format("multiplier {} on mesh", at.index), [&](const OtherMesh& mesh) {
     return answer_of([&] {
       const auto other = corrected_on(mesh, cycle);
       if (!other) return std::vector<double>{};
-      return std::vector{leading(stability_of(*other->problem, other->other ? *other->other : *system_))};
+      return std::vector{leading(stability_of(*other->problem, *other->system))};
     });
   });
   for (std::size_t k = 0; k < all.size(); ++k) bars.add(all[k].axis, all[k].spacing, rows[k]);
@@ -218,33 +218,30 @@ solve::Cycle CycleFollower::along(const solve::LocatedEvent& found, const solve:
 
 // Folds have no cycle beyond them, so the parameter cannot be held: the cycle of the same amplitude along the branch is
 // solved, and the fold sought from there.
-std::optional<CycleNumbers> CycleFollower::fold_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+std::optional<CycleNumbers> CycleFollower::fold_on(const OtherMesh& mesh, const solve::LocatedEvent& found,
                                                    const solve::Cycle& given, const solve::Cycle& along) const {
-  const auto other = mesh.axis == Axis::time ? nullptr : make_system(mesh.film);
-  system::Plant& system = other ? *other : *system_;
-  const solve::Cycle cycle = on_film_of(system, given);
-  const auto made = problem_on(mesh, system, cycle);
-  if (!made) return {};
-  solve::PeriodicProblem& problem = *made;
-  if (autonomous()) problem.set_phase_reference(cycle);
-  core::Vector u = problem.scatter(cycle), row = core::duplicate(u.get());
+  const auto there = carried_to(mesh, given);
+  if (!there) return {};
+  solve::PeriodicProblem& problem = *there->problem;
+  const Vec u = there->u.get();
+  const core::Vector row = core::duplicate(u);
   // Own states of a film are resampled with the journal's place, affinely: a direction is the difference of two.
   solve::Cycle direction = along, moved = given;
   moved.x += direction.x;
-  direction.x = on_film_of(system, std::move(moved)).x - cycle.x;
+  direction.x = on_film_of(*there->system, std::move(moved)).x - there->cycle.x;
   const core::Vector tangent = problem.scatter(direction);
   solve::set_last_entry(problem.comm(), tangent.get(), 0);
   solve::weighted_row(problem, tangent.get(), row.get());
   check(VecScale(row.get(), 1 / std::sqrt(solve::inner(problem, tangent.get(), tangent.get()))));
   double offset = 0;
-  check(VecDot(row.get(), u.get(), &offset));
+  check(VecDot(row.get(), u, &offset));
   if (problem.has_adjoint()) {
-    const auto there = solve::refine(problem, found, u.get(), solve::any_tangent(problem, u.get()).get(), newton_);
-    if (there && std::abs(there->parameter - found.parameter) < continuation_.max_step)
-      return CycleNumbers{there->parameter, 0, problem.gather(there->u.get()).period, there->quadratic};
+    const auto fold = solve::refine(problem, found, u, solve::any_tangent(problem, u).get(), newton_);
+    if (fold && std::abs(fold->parameter - found.parameter) < continuation_.max_step)
+      return CycleNumbers{fold->parameter, 0, problem.gather(fold->u.get()).period, fold->quadratic};
   }
-  if (!solve::newton(problem, u.get(), row.get(), offset, newton_).converged) return {};
-  return CycleNumbers{solve::last_entry(problem.comm(), u.get()), 0, problem.gather(u.get()).period, io::no_value};
+  if (!solve::newton(problem, u, row.get(), offset, newton_).converged) return {};
+  return CycleNumbers{solve::last_entry(problem.comm(), u), 0, problem.gather(u).period, io::no_value};
 }
 
 namespace {
@@ -258,7 +255,7 @@ std::optional<std::complex<double>> nearest_multiplier(solve::PeriodicProblem& p
 
 }  // namespace
 
-std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+std::optional<CycleNumbers> CycleFollower::numbers_on(const OtherMesh& mesh, const solve::LocatedEvent& found,
                                                       const solve::Cycle& cycle, const solve::Cycle& along,
                                                       bool with_coefficient) const {
   return answer_of([&]() -> std::optional<CycleNumbers> {
@@ -269,7 +266,7 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
     // located there, from the cycle as it was carried over or, where that is too rough, as it is at the same parameter.
     // Elsewhere the slope tells.
     solve::PeriodicProblem& problem = *there->problem;
-    system::Plant& system = there->other ? *there->other : *system_;
+    system::Plant& system = *there->system;
     const bool by_condition = problem.has_adjoint(),
                locate = by_condition && (with_coefficient || (mesh.axis != Axis::time && mesh.spacing > 1));
     const auto located = [&]() -> std::optional<CycleNumbers> {
@@ -314,7 +311,7 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
 }
 
 // The cycles of twice the period that are born at the flip, which lies at `place` there.
-std::optional<Parabola> CycleFollower::born_on(const CycleMesh& mesh, const solve::Cycle& flip, double place) const {
+std::optional<Parabola> CycleFollower::born_on(const OtherMesh& mesh, const solve::Cycle& flip, double place) const {
   return answer_of([&]() -> std::optional<Parabola> {
     solve::Cycle given = flip;
     given.parameter = place * scale_;
@@ -329,11 +326,10 @@ std::optional<Parabola> CycleFollower::born_on(const CycleMesh& mesh, const solv
   });
 }
 
-std::vector<ContactThere> CycleFollower::contacts_there(const solve::Cycle& last, double place) {
-  const auto on = [&](const CycleMesh& mesh) {
+std::vector<Sample> CycleFollower::contacts_there(const solve::Cycle& last, double place) {
+  const auto on = [&](const OtherMesh& mesh) {
     auto there = answer_of([&] { return carried_to(mesh, last); });
     if (!there) return std::vector{io::no_value};
-    system::Plant& system = there->other ? *there->other : *system_;
     core::Vector row = core::duplicate(there->u.get());
     solve::parameter_row(*there->problem, row.get());
     return std::vector{contact_there(place, margins_, [&](double parameter) {
@@ -342,15 +338,15 @@ std::vector<ContactThere> CycleFollower::contacts_there(const solve::Cycle& last
         core::Vector trial = core::duplicate(there->u.get());
         check(VecCopy(there->u.get(), trial.get()));
         if (!solve::newton(*there->problem, trial.get(), row.get(), parameter, newton_).converged) return;
-        found = margin(there->problem->orbit(trial.get()), system);
+        found = margin(there->problem->orbit(trial.get()), *there->system);
         std::swap(there->u, trial);
       });
       return found;
     })};
   };
-  const std::vector<CycleMesh> all = meshes();
+  const std::vector<OtherMesh> all = meshes();
   const Rows rows = on_each(all, "contact on mesh", on);
-  std::vector<ContactThere> out;
+  std::vector<Sample> out;
   for (std::size_t k = 0; k < all.size(); ++k) out.push_back({all[k].axis, all[k].spacing, rows[k].front()});
   return out;
 }
@@ -366,7 +362,7 @@ double CycleFollower::time_error(const Located& at) {
   found.critical = at.critical;
   Bars bars({found.parameter}, law());
   const solve::Cycle direction = along(found, at.cycle);
-  for (const CycleMesh& mesh : meshes())
+  for (const OtherMesh& mesh : meshes())
     if (mesh.axis == Axis::time) {
       const auto there = numbers_on(mesh, found, at.cycle, direction, false);
       bars.add(mesh.axis, mesh.spacing, there ? std::vector{there->place} : std::vector<double>{});

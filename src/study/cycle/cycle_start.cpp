@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/branch_state.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/make_plant.hpp"
+#include "study/packed.hpp"
 #include "study/state_rows.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
@@ -53,7 +55,6 @@ solve::Restart CycleFollower::start_at_hopf() {
     x = first_guess(*system_);
   }
   equilibria.from_state(x.get(), system_->parameter(), u.get());
-  double parameter = 0;
   solve::LocatedEvent hopf{};
   solve::BranchCallbacks callbacks;
   callbacks.stability = [&](Vec v) {
@@ -64,7 +65,6 @@ solve::Restart CycleFollower::start_at_hopf() {
     if (at_hopf || found.event != solve::Event::hopf || !found.located) return;
     at_hopf = core::duplicate(x.get());
     equilibria.to_state(v, at_hopf.get());
-    parameter = found.parameter * scale_;
     hopf = found;
   };
   callbacks.checkpoint = [&](const solve::ResumePoint&, Vec, Vec) { return !at_hopf; };
@@ -79,20 +79,11 @@ solve::Restart CycleFollower::start_at_hopf() {
   };
   const io::Group& piece = pieces_->get("hopf", [&](io::Group& found) {
     search();
-    found.put("values",
-              {parameter, hopf.parameter, hopf.bracket, hopf.sensitivity, static_cast<double>(hopf.unstable_before),
-               static_cast<double>(hopf.unstable_after), hopf.slope},
-              "1", "where, with what changes there");
+    put_packed(found, "event", hopf, "where, with what changes there");
     put_columns(found, "state", rows_of(at_hopf.get()), stored(), "SI", "equilibrium, in natural order");
   });
-  const std::vector<double>& known = piece.reals("values");
-  parameter = known[0];
-  hopf.parameter = known[1];
-  hopf.bracket = known[2];
-  hopf.sensitivity = known[3];
-  hopf.unstable_before = static_cast<int>(known[4]);
-  hopf.unstable_after = static_cast<int>(known[5]);
-  hopf.slope = known[6];
+  hopf = take_packed<solve::LocatedEvent>(piece, "event");
+  const double parameter = hopf.parameter * scale_;
   at_hopf = core::duplicate(x.get());
   {
     const Eigen::MatrixXd state = take_columns(piece, "state", stored());
@@ -144,7 +135,6 @@ solve::Restart CycleFollower::start_at_hopf() {
   restart.step = continuation_.initial_step;
   restart.point.index = -1;  // the Hopf point is no cycle: the first one comes next
   restart.point.parameter = parameter / scale_;
-  hopf.event = solve::Event::hopf;
   hopf.critical = {0, critical->lambda.imag()};
   record_hopf(hopf, at_hopf.get(), restart);
   return restart;

@@ -46,7 +46,7 @@ std::optional<Parabola> CycleFollower::parabola(solve::PeriodicProblem& problem,
 // A branch is supercritical that lives where the old one is unstable.
 void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
                                     double sensitivity,
-                                    const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere) const {
+                                    const std::function<std::optional<Parabola>(const OtherMesh&)>& elsewhere) const {
   const auto born = sensitivity == 0 ? std::nullopt : parabola(problem, u, tangent);
   const bool asked = !b.criticality.empty();
   if (!born) {
@@ -63,7 +63,7 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& 
   if (!asked && elsewhere && law().estimated) {
     Bars bars({born->curvature}, law());
     double change = 0;
-    for (const CycleMesh& mesh : meshes()) {
+    for (const OtherMesh& mesh : meshes()) {
       if (mesh.axis != Axis::time || !decided(born->curvature, born->error + change)) continue;
       const auto there = elsewhere(mesh);
       const double c = there ? there->curvature : io::no_value;

@@ -67,10 +67,10 @@ namespace {
 
 // Where the branch comes to its contact at `place` on other film meshes; `points` are some of its equilibria, the last
 // one among them.
-std::vector<ContactThere> contacts_there(const Context& context, const Layout& layout, Pieces& pieces,
-                                         const EquilibriumBranchOptions& options, const system::Plant& system,
-                                         const std::vector<CurvePoint>& points, double place, double scale,
-                                         const MarginSlope& here, const solve::NewtonOptions& newton) {
+std::vector<Sample> contacts_there(const Context& context, const Layout& layout, Pieces& pieces,
+                                   const EquilibriumBranchOptions& options, const system::Plant& system,
+                                   const std::vector<CurvePoint>& points, double place, double scale,
+                                   const MarginSlope& here, const solve::NewtonOptions& newton) {
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   const auto on = [&](std::size_t k) {
     const auto other = plant_of(context, options, meshes[k].factor);
@@ -102,7 +102,7 @@ std::vector<ContactThere> contacts_there(const Context& context, const Layout& l
       return margin_from(resampled(*other, system, std::vector<double>(known.data(), known.data() + known.size())));
     });
   };
-  std::vector<ContactThere> out;
+  std::vector<Sample> out;
   for (const double there : distribute(layout, meshes.size(), on, pieces, "contact on mesh", no_trail))
     out.push_back({meshes[out.size()].axis, meshes[out.size()].spacing, there});
   return out;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numeric>
 
+#include "study/bars/summary_bars.hpp"
 #include "study/state_rows.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/bifurcation/harmonic_cycle.hpp"
@@ -83,21 +84,16 @@ std::optional<BirthOfCycles> birth_of_cycles(system::Plant& system, Vec x, doubl
   for (int halvings = 0; halvings < 4; ++halvings, largest /= 2) {
     std::array<double, 3> p{};
     BirthOfCycles out;
-    try {
+    const bool found = has_answer([&] {
       solve::HarmonicCycle cycles(system, x, omega, motion.q, harmonics, parameter_scale);
       for (std::size_t k = 0; k < 3; ++k) {
         const double a = largest * std::exp2(static_cast<double>(k) - 2);
         out.amplitudes[k] = a;
         p[k] = cycles.at_amplitude(a, {})[0] / parameter_scale;
       }
-      system.set_parameter(parameter);
-    } catch (const core::NotConverged&) {
-      system.set_parameter(parameter);
-      continue;
-    } catch (const core::DomainError&) {
-      system.set_parameter(parameter);
-      continue;
-    }
+    });
+    system.set_parameter(parameter);
+    if (!found) continue;
     const auto slope = [&](std::size_t k) {
       const double a = out.amplitudes[k], b = out.amplitudes[k + 1];
       return (p[k + 1] - p[k]) / (b * b - a * a);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 
 #include "study/bars/summary_bars.hpp"
 #include "study/locus/locus_follower.hpp"
@@ -61,12 +62,11 @@ MeshLaw LocusFollower::law() const {
   return law;
 }
 
-std::vector<CycleMesh> LocusFollower::meshes() const {
-  std::vector<CycleMesh> out;
+std::vector<OtherMesh> LocusFollower::meshes() const {
+  std::vector<OtherMesh> out;
   if (curve_.cycles) out = time_meshes(!merged(curve_.cycles->mesh()).empty(), context_.layout);
   if (system_->has_film_mesh())
-    for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
-      out.push_back({m.axis, m.spacing, m.factor});
+    std::ranges::copy(film_meshes(context_.machine, context_.layout), std::back_inserter(out));
   return out;
 }
 
@@ -81,14 +81,14 @@ CurvePoint LocusFollower::point_at(Vec whole) const {
 }
 
 // Without a mesh of time that coarse: nothing. The second parameter of this follower is left at that of the point.
-std::optional<CurveProblem> LocusFollower::carried_to(const CycleMesh& mesh, const CurvePoint& given) {
+std::optional<CurveProblem> LocusFollower::carried_to(const OtherMesh& mesh, const CurvePoint& given) {
   std::vector<double> times = given.cycle.mesh;
   if (mesh.axis == Axis::time)
     for (double left = 1 / mesh.spacing; left > 1; left /= 2) times = solve::doubled(times);
   if (mesh.axis == Axis::time && mesh.spacing > 1) times = merged(times);
   if (times.empty()) return {};
   second_value_ = given.second * second_scale_;
-  auto system = make_system(given.cycle.parameter, mesh.film);
+  auto system = make_system(given.cycle.parameter, mesh.factor);
   CurvePoint point = given;
   point.cycle = resampled(*system, *system_, std::move(point.cycle));
   std::complex<double> critical = 1;
@@ -101,14 +101,14 @@ std::optional<CurveProblem> LocusFollower::carried_to(const CycleMesh& mesh, con
     point.cycle = as_cycle(*system, x.get(), given.cycle.parameter);
     critical = {0, given.inner(0)};
   }
-  CurveProblem out = problem_at(point, critical, *system, mesh.film, times);
+  CurveProblem out = problem_at(point, critical, *system, mesh.factor, times);
   out.other = std::move(system);
   out.problem->prime(out.whole.get());
   return out;
 }
 
 // How far the curve on another mesh lies beside a point, normal to `along`, scaled.
-std::vector<double> LocusFollower::beside_curve(const CycleMesh& mesh, const CurvePoint& point,
+std::vector<double> LocusFollower::beside_curve(const OtherMesh& mesh, const CurvePoint& point,
                                                 const Eigen::Vector2d& along) {
   const Borrowed second(second_value_);
   return answer_of([&]() -> std::vector<double> {
@@ -128,7 +128,7 @@ std::vector<double> LocusFollower::beside_curve(const CycleMesh& mesh, const Cur
 }
 
 // The place of a point of codimension two on a mesh, by the secant method on its test along the curve there.
-std::vector<double> LocusFollower::zero_on(const CycleMesh& mesh, const CurvePoint& near, const std::string& type) {
+std::vector<double> LocusFollower::zero_on(const OtherMesh& mesh, const CurvePoint& near, const std::string& type) {
   const Borrowed second(second_value_);
   return answer_of([&]() -> std::vector<double> {
     const auto there = carried_to(mesh, near);
@@ -177,7 +177,7 @@ std::vector<double> LocusFollower::direction_at(const CurvePoint& point) {
 
 Bar LocusFollower::bar_beside(const std::string& name, const CurvePoint& point, const Eigen::Vector2d& along) {
   Bars bars({0.0}, law());
-  for (const CycleMesh& mesh : meshes())
+  for (const OtherMesh& mesh : meshes())
     bars.add(mesh.axis, mesh.spacing,
              pieces_->numbers(fmt::format("{} mesh {} {:.3f}", name, static_cast<int>(mesh.axis), mesh.spacing),
                               [&] { return beside_curve(mesh, point, along); }));
@@ -209,7 +209,7 @@ void LocusFollower::put_bars(io::CodimensionTwo& c, Vec whole, double location) 
     first = share(std::abs(t(1)));
     second = share(std::abs(t(0)));
   } else {
-    const auto find = [&](const CycleMesh& mesh) {
+    const auto find = [&](const OtherMesh& mesh) {
       return pieces_->numbers(fmt::format("{} mesh {} {:.3f}", name, static_cast<int>(mesh.axis), mesh.spacing),
                               [&] { return zero_on(mesh, point, c.type); });
     };
@@ -217,7 +217,7 @@ void LocusFollower::put_bars(io::CodimensionTwo& c, Vec whole, double location) 
     std::vector<double> here = find({});
     if (here.empty()) here = {unknown, unknown};
     Bars bars(here, law());
-    for (const CycleMesh& mesh : meshes()) bars.add(mesh.axis, mesh.spacing, find(mesh));
+    for (const OtherMesh& mesh : meshes()) bars.add(mesh.axis, mesh.spacing, find(mesh));
     const auto with_location = [&](std::size_t k) {
       Bar bar = bars[k];
       bar.location = std::abs(here[k] - reported(static_cast<Eigen::Index>(k))) + tolerance_at(reported);
@@ -268,7 +268,7 @@ std::vector<RowBar> LocusFollower::bars_of(const std::vector<Row>& rows, std::si
   take(spread_, true);
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.row < b.row; });
   double cost = 0;
-  for (const CycleMesh& mesh : meshes()) cost += approach / mesh.spacing;
+  for (const OtherMesh& mesh : meshes()) cost += approach / mesh.spacing;
   const double affordable = cost > 0 ? static_cast<double>(rows.size()) / cost : most_bars;
   points = evenly_spread(std::move(points),
                          static_cast<std::size_t>(std::clamp(affordable, double{fewest_bars}, double{most_bars})));

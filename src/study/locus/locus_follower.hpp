@@ -136,12 +136,12 @@ private:
   void watch_peaks(Vec whole, const Row& before);
   // The curve and its points of codimension two on other meshes.
   [[nodiscard]] MeshLaw law() const;
-  [[nodiscard]] std::vector<CycleMesh> meshes() const;
+  [[nodiscard]] std::vector<OtherMesh> meshes() const;
   [[nodiscard]] CurvePoint point_at(Vec whole) const;
-  [[nodiscard]] std::optional<CurveProblem> carried_to(const CycleMesh& mesh, const CurvePoint& given);
-  [[nodiscard]] std::vector<double> beside_curve(const CycleMesh& mesh, const CurvePoint& point,
+  [[nodiscard]] std::optional<CurveProblem> carried_to(const OtherMesh& mesh, const CurvePoint& given);
+  [[nodiscard]] std::vector<double> beside_curve(const OtherMesh& mesh, const CurvePoint& point,
                                                  const Eigen::Vector2d& along);
-  [[nodiscard]] std::vector<double> zero_on(const CycleMesh& mesh, const CurvePoint& near, const std::string& type);
+  [[nodiscard]] std::vector<double> zero_on(const OtherMesh& mesh, const CurvePoint& near, const std::string& type);
   [[nodiscard]] std::vector<double> direction_at(const CurvePoint& point);
   [[nodiscard]] Bar bar_beside(const std::string& name, const CurvePoint& point, const Eigen::Vector2d& along);
   [[nodiscard]] double tolerance_at(const Eigen::Vector2d& place) const;
