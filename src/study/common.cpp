@@ -9,6 +9,7 @@
 
 #include "study/bars/mesh_wave.hpp"
 #include "study/bars/unresolved.hpp"
+#include "study/columns.hpp"
 #include "study/make_plant.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -261,22 +262,17 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
 }
 
 void put_elements(io::Group& group, const system::Machine& machine) {
-  if (machine.elements.empty()) return;
-  std::vector<std::string> name, role, pedestal;
-  std::vector<std::int64_t> node, to_node;
-  for (const system::Element& e : machine.elements) {
-    name.push_back(e.name);
-    role.emplace_back(deck::name_of(e.role));
-    node.push_back(e.node);
-    to_node.push_back(e.to_node.value_or(0));
-    pedestal.push_back(e.to_pedestal.value_or(""));
-  }
+  const auto& all = machine.elements;
+  if (all.empty()) return;
+  using E = system::Element;
   auto& elements = group.child("elements");
-  elements.put("name", name, "elements in the order of the deck");
-  elements.put("role", role, "what they are");
-  elements.put("node", node, "shaft node, 1-based");
-  elements.put("to_node", to_node, "shaft node of the other end, 1-based; 0: the ground or a pedestal");
-  elements.put("to_pedestal", pedestal, "bearing on whose pedestal the other end is; empty: none");
+  elements.put("name", column(all, &E::name), "elements in the order of the deck");
+  elements.put("role", column(all, [](const E& e) { return deck::name_of(e.role); }), "what they are");
+  elements.put("node", column(all, &E::node), "shaft node, 1-based");
+  elements.put("to_node", column(all, [](const E& e) { return e.to_node.value_or(0); }),
+               "shaft node of the other end, 1-based; 0: the ground or a pedestal");
+  elements.put("to_pedestal", column(all, [](const E& e) { return e.to_pedestal.value_or(""); }),
+               "bearing on whose pedestal the other end is; empty: none");
 }
 
 void put_places(io::Group& group, const system::Machine& machine, const system::Plant& plant) {

@@ -10,6 +10,15 @@
 
 namespace whirl::study {
 
+/// A cycle, and what reads it: the scheme of its nodes, and the plant at its parameter.
+struct CycleOrbit {
+  solve::Cycle cycle;
+  const solve::Scheme& scheme;
+  system::Plant& system;
+  /// The state at s in [0, 1].
+  [[nodiscard]] Eigen::VectorXd at(double s) const { return cycle.at(scheme, s); }
+};
+
 /// What a plant shows of such states. Collective on its communicator.
 class StateRows {
 public:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "service.hpp"
+#include "study/columns.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/core/session.hpp"
@@ -20,16 +21,11 @@ namespace {
 void put_options(io::Group& root, const std::vector<io::LibraryOption>& options) {
   root.erase_group("options");
   if (options.empty()) return;
-  std::vector<std::string> names, values, sources;
-  for (const auto& o : options) {
-    names.push_back(o.name);
-    values.push_back(o.value);
-    sources.push_back(o.source);
-  }
+  using O = io::LibraryOption;
   auto& group = root.child("options");
-  group.put("name", std::move(names), "options of PETSc and SLEPc in force");
-  group.put("value", std::move(values), "their values; empty: a flag");
-  group.put("source", std::move(sources), "where they came from; empty: not known");
+  group.put("name", column(options, &O::name), "options of PETSc and SLEPc in force");
+  group.put("value", column(options, &O::value), "their values; empty: a flag");
+  group.put("source", column(options, &O::source), "where they came from; empty: not known");
 }
 
 }  // namespace

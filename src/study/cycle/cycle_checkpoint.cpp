@@ -145,9 +145,8 @@ std::optional<solve::Restart> CycleFollower::restore() {
   }
   filled_ = restart.point.filled;
   largest_ = state.real("largest_difference");
-  system_->set_parameter(cycle.parameter);
-  const solve::Cycle orbit = problem_->orbit(restart.u.get());
-  if (may_return()) (void)returned(orbit);
+  const CycleOrbit orbit = orbit_of(restart.u.get());
+  if (may_return()) (void)returned(orbit.cycle);
   add_margin(restart.point.parameter, orbit);
   return restart;
 }

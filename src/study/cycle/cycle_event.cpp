@@ -194,8 +194,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   }
   if (autonomous() && found.event == solve::Event::cyclic_fold) doubt_at_birth(b);
   ++events_;
-  system_->set_parameter(cycle.parameter);  // other meshes and branches may have left it elsewhere
-  shafts_.append(io::name_of(b.type), b.value, problem_->orbit(u), problem_->orbit_scheme(), *system_);
+  shafts_.append(io::name_of(b.type), b.value, orbit_of(u));
   context_.results.summary().bifurcations.push_back(b);
   if (keeps_located_)
     located_.push_back(

@@ -135,25 +135,29 @@ solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem, sy
   return out;
 }
 
-double CycleFollower::room(const solve::Cycle& orbit, system::Plant& system) const {
+CycleOrbit CycleFollower::orbit_of(Vec u) const {
+  system_->set_parameter(problem_->gather(u).parameter);  // closer looks may have left it elsewhere
+  return {problem_->orbit(u), problem_->orbit_scheme(), *system_};
+}
+
+double CycleFollower::room(const CycleOrbit& orbit) const {
   if (!options_.max_eccentricity) return std::numeric_limits<double>::infinity();
-  return *options_.max_eccentricity - record_.eccentricity(orbit, problem_->orbit_scheme(), system);
+  return *options_.max_eccentricity - record_.eccentricity(orbit);
 }
 
-double CycleFollower::margin(const solve::Cycle& orbit, system::Plant& system) const {
-  return std::min(films_.margin(least_films(orbit, system)), room(orbit, system));
+double CycleFollower::margin(const CycleOrbit& orbit) const {
+  return std::min(films_.margin(least_films(orbit.cycle, orbit.system)), room(orbit));
 }
 
-void CycleFollower::add_margin(double parameter, const solve::Cycle& orbit) {
-  if (films_.exists() || options_.max_eccentricity) margins_.add(parameter, margin(orbit, *system_));
+void CycleFollower::add_margin(double parameter, const CycleOrbit& orbit) {
+  if (films_.exists() || options_.max_eccentricity) margins_.add(parameter, margin(orbit));
 }
 
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
-  system_->set_parameter(cycle.parameter);  // closer looks may have left it elsewhere
-  const solve::Cycle orbit = problem_->orbit(u);
-  record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
-  nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
+  const CycleOrbit orbit = orbit_of(u);
+  record_.append(point, orbit, scale_);
+  nodes_.append(point.parameter, orbit);
   limits_.see(point.monitors);
   if (!point.between) add_margin(point.parameter, orbit);
   report_between(last_ ? *last_ : cycle, cycle);
@@ -171,10 +175,9 @@ void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
 }
 
 std::vector<std::vector<double>> CycleFollower::drawn(Vec u) {
-  system_->set_parameter(problem_->gather(u).parameter);
-  const solve::Cycle orbit = problem_->orbit(u);
-  auto axes = record_.drawn(orbit, problem_->orbit_scheme(), *system_);
-  const NodeRecord::NodeSizes nodes = nodes_.sizes(orbit, problem_->orbit_scheme(), *system_);
+  const CycleOrbit orbit = orbit_of(u);
+  auto axes = record_.drawn(orbit);
+  const NodeRecord::NodeSizes nodes = nodes_.sizes(orbit);
   for (std::size_t k = 0; k < nodes.x.size(); ++k) axes.push_back({nodes.amplitude[k], nodes.x[k], nodes.y[k]});
   return axes;
 }
@@ -203,17 +206,17 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
 
 void CycleFollower::report(const std::string& key, Vec u) {
   io::StudySummary own;
-  const solve::Cycle cycle = problem_->gather(u), orbit = problem_->orbit(u);
-  record_.report(key, orbit, problem_->orbit_scheme(), *system_, stability_of(*problem_, *system_), own);
-  shafts_.append("at", cycle.parameter / scale_, orbit, problem_->orbit_scheme(), *system_);
+  const solve::Cycle cycle = problem_->gather(u);
+  const CycleOrbit orbit = orbit_of(u);
+  record_.report(key, orbit, stability_of(*problem_, *system_), own);
+  shafts_.append("at", cycle.parameter / scale_, orbit);
   SummaryBars bars(own, law());
   const std::vector<OtherMesh> all = meshes();
   const Rows rows = on_each(all, fmt::format("report {} on mesh", key), [&](const OtherMesh& mesh) {
     io::StudySummary there;
     const auto answer = [&] {
       if (const auto other = corrected_on(mesh, cycle))
-        record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(), *other->system,
-                       stability_of(*other->problem, *other->system), there);
+        record_.report(key, other->orbit(other->u.get()), stability_of(*other->problem, *other->system), there);
     };
     if (!has_answer(answer)) there = {};
     return bars.row(there);
@@ -238,7 +241,7 @@ void CycleFollower::close_at_flip(double landed) {
   if (!only) return;
   solve::Cycle simple = only->cycle;  // run through once it shows all that twice would
   simple.period *= 2;
-  record_.close(simple, problem_->orbit_scheme(), *system_, scale_);
+  record_.close({std::move(simple), problem_->orbit_scheme(), *system_}, scale_);
 }
 
 StudyResult CycleFollower::run() {
@@ -253,7 +256,7 @@ StudyResult CycleFollower::run() {
       restart = start_at_hopf();
     else
       u = start(*problem_);
-    if (restart) record_.begin(problem_->orbit(restart->u.get()), problem_->orbit_scheme(), *system_, scale_);
+    if (restart) record_.begin(orbit_of(restart->u.get()), scale_);
   }
   if (!restored) leaves_ = may_return();
   put_groups(context_.results.summary(), system_->groups());
@@ -263,13 +266,7 @@ StudyResult CycleFollower::run() {
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
   callbacks.drawn = [this](Vec v) { return drawn(v); };
-  // What was known already has not set the system.
-  const auto orbit_of = [this](Vec v) {
-    system_->set_parameter(problem_->gather(v).parameter);
-    return problem_->orbit(v);
-  };
-  if (!limits_.empty())
-    callbacks.monitors = [&](Vec v, Vec) { return limits_.of(orbit_of(v), problem_->orbit_scheme(), *system_); };
+  if (!limits_.empty()) callbacks.monitors = [&](Vec v, Vec) { return limits_.of(orbit_of(v)); };
   callbacks.on_zero = [this](const solve::LocatedZero& zero, Vec v) {
     if (zero.located) limits_.pass(zero.monitor, problem_->gather(v));
   };
@@ -280,11 +277,11 @@ StudyResult CycleFollower::run() {
   // The branch has touched, as it was asked to, or its film has become too thin.
   bool contact = false;
   if (films_.exists() || options_.max_eccentricity) {
-    callbacks.limit = [this, orbit_of](Vec v) { return margin(orbit_of(v), *system_); };
-    callbacks.why = [this, orbit_of, &contact](Vec v) {
-      const solve::Cycle orbit = orbit_of(v);
-      const std::vector<double> films = least_films(orbit, *system_);
-      contact = room(orbit, *system_) <= films_.margin(films);
+    callbacks.limit = [this](Vec v) { return margin(orbit_of(v)); };
+    callbacks.why = [this, &contact](Vec v) {
+      const CycleOrbit orbit = orbit_of(v);
+      const std::vector<double> films = least_films(orbit.cycle, *system_);
+      contact = room(orbit) <= films_.margin(films);
       return contact ? fmt::format("the eccentricity reaches {:.6g} (max_eccentricity)", *options_.max_eccentricity)
                      : films_.reason(films);
     };

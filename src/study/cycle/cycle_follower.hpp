@@ -127,9 +127,9 @@ private:
                        const std::function<std::optional<Parabola>(const OtherMesh&)>& elsewhere = {}) const;
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
-  [[nodiscard]] double margin(const solve::Cycle& orbit, system::Plant& system) const;
+  [[nodiscard]] double margin(const CycleOrbit& orbit) const;
   /// Of a point of the branch, for the slope at which it meets its limit.
-  void add_margin(double parameter, const solve::Cycle& orbit);
+  void add_margin(double parameter, const CycleOrbit& orbit);
   /// Where the branch comes to its contact at `place` (scaled) on other meshes; `last` is its last cycle.
   [[nodiscard]] std::vector<Sample> contacts_there(const solve::Cycle& last, double place);
   void doubt(BranchVerdict& verdict);
@@ -152,7 +152,9 @@ private:
   }
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
-  [[nodiscard]] double room(const solve::Cycle& orbit, system::Plant& system) const;
+  [[nodiscard]] double room(const CycleOrbit& orbit) const;
+  /// The cycle u of the branch, at whose parameter the system is left.
+  [[nodiscard]] CycleOrbit orbit_of(Vec u) const;
   void on_point(const solve::BranchPoint& point, Vec u);
   /// What pictures show of a solution, by their axes.
   [[nodiscard]] std::vector<std::vector<double>> drawn(Vec u);
@@ -196,6 +198,7 @@ private:
     solve::Cycle cycle;  // as it was carried over
     std::unique_ptr<solve::PeriodicProblem> problem;
     core::Vector u;
+    [[nodiscard]] CycleOrbit orbit(Vec at) const { return {problem->orbit(at), problem->orbit_scheme(), *system}; }
   };
   [[nodiscard]] std::optional<Elsewhere> carried_to(const OtherMesh& mesh, const solve::Cycle& given) const;
   /// Solves it there at the same parameter, and linearises.

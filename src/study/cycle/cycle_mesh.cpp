@@ -338,7 +338,7 @@ std::vector<Sample> CycleFollower::contacts_there(const solve::Cycle& last, doub
         core::Vector trial = core::duplicate(there->u.get());
         check(VecCopy(there->u.get(), trial.get()));
         if (!solve::newton(*there->problem, trial.get(), row.get(), parameter, newton_).converged) return;
-        found = margin(there->problem->orbit(trial.get()), *there->system);
+        found = margin(there->orbit(trial.get()));
         std::swap(there->u, trial);
       });
       return found;

@@ -8,7 +8,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/mesh_wave.hpp"
-#include "study/state_rows.hpp"
+#include "study/packed.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -21,11 +21,11 @@ struct Extremes {
 };
 
 // What is shown of all places at `count` equidistant times: [time][place][x, y].
-std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, int count) {
+std::vector<double> sample(const CycleOrbit& orbit, int count) {
   std::vector<double> out;
-  StateRows states(system);
+  StateRows states(orbit.system);
   for (int k = 0; k < count; ++k)
-    for (const auto& j : states.shown(cycle.at(scheme, static_cast<double>(k) / count))) {
+    for (const auto& j : states.shown(orbit.at(static_cast<double>(k) / count))) {
       out.push_back(j.position[0]);
       out.push_back(j.position[1]);
     }
@@ -112,25 +112,24 @@ std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius
   return eccentricity;
 }
 
-void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
-                       double scale) const {
-  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
-  end.append({{cycle.parameter / scale},
-              {cycle.period},
+void CycleRecord::keep(io::Table& end, const CycleOrbit& orbit, double scale) const {
+  const Extremes e = extremes(sample(orbit, samples_per_orbit), places_.names.size());
+  end.append({{orbit.cycle.parameter / scale},
+              {orbit.cycle.period},
               e.x_max,
               e.x_min,
               e.y_max,
               e.y_min,
               per_clearance(e.radius),
-              film_column(least_films(cycle, system), places_.names.size())});
+              film_column(least_films(orbit.cycle, orbit.system), places_.names.size())});
 }
 
-void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale) {
-  keep(birth_, cycle, scheme, system, scale);
+void CycleRecord::begin(const CycleOrbit& orbit, double scale) {
+  keep(birth_, orbit, scale);
 }
 
-void CycleRecord::close(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale) {
-  keep(closing_, cycle, scheme, system, scale);
+void CycleRecord::close(const CycleOrbit& orbit, double scale) {
+  keep(closing_, orbit, scale);
 }
 
 void CycleRecord::drop_last() {
@@ -139,9 +138,8 @@ void CycleRecord::drop_last() {
   table_.truncate(orbits_.size());
 }
 
-void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                         system::Plant& system, double scale) {
-  std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
+void CycleRecord::append(const solve::BranchPoint& point, const CycleOrbit& orbit, double scale) {
+  std::vector<double> motion = sample(orbit, samples_per_orbit);
   const Extremes e = extremes(motion, places_.names.size());
   // Only so many were searched for, and zero would be a multiplier.
   std::vector<double> re(static_cast<std::size_t>(multipliers_), std::numeric_limits<double>::quiet_NaN()), im = re;
@@ -151,8 +149,8 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
   }
   const int unstable = point.stability.unstable();
   const bool unknown = point.stability.unknown;
-  table_.append({{cycle.parameter / scale},
-                 {cycle.period},
+  table_.append({{orbit.cycle.parameter / scale},
+                 {orbit.cycle.period},
                  {unknown         ? io::no_value
                   : unstable == 0 ? 1.0
                                   : 0.0},
@@ -160,21 +158,20 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
                  {static_cast<double>(point.stability.mesh_waves.size())},
                  {point.step},
                  {static_cast<double>(point.newton_iterations)},
-                 {static_cast<double>(cycle.intervals())},
+                 {static_cast<double>(orbit.cycle.intervals())},
                  e.x_max,
                  e.x_min,
                  e.y_max,
                  e.y_min,
                  per_clearance(e.radius),
-                 film_column(least_films(cycle, system), places_.names.size()),
+                 film_column(least_films(orbit.cycle, orbit.system), places_.names.size()),
                  re,
                  im});
   orbits_.push_back(std::move(motion));
 }
 
-std::vector<std::vector<double>> CycleRecord::drawn(const solve::Cycle& cycle, const solve::Scheme& scheme,
-                                                    system::Plant& system) const {
-  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+std::vector<std::vector<double>> CycleRecord::drawn(const CycleOrbit& orbit) const {
+  const Extremes e = extremes(sample(orbit, samples_per_orbit), places_.names.size());
   std::vector<std::vector<double>> axes;
   for (std::size_t i = 0; i < e.radius.size(); ++i) {
     axes.push_back({e.x_max[i], e.x_min[i]});
@@ -183,12 +180,8 @@ std::vector<std::vector<double>> CycleRecord::drawn(const solve::Cycle& cycle, c
   return axes;
 }
 
-double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system) const {
-  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < e.radius.size(); ++i)
-    if (places_.clearances[i] > 0) largest = std::max(largest, e.radius[i] / places_.clearances[i]);
-  return largest;
+double CycleRecord::eccentricity(const CycleOrbit& orbit) const {
+  return std::ranges::max(per_clearance(extremes(sample(orbit, samples_per_orbit), places_.names.size()).radius));
 }
 
 double CycleRecord::modulus(int point) const {
@@ -242,10 +235,10 @@ int CycleRecord::passes(double parameter) const {
   return times;
 }
 
-void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                         system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
-  const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), places_.names.size());
-  const std::vector<double> films = film_column(least_films(cycle, system), places_.names.size());
+void CycleRecord::report(const std::string& key, const CycleOrbit& orbit, const solve::Stability& stability,
+                         io::StudySummary& summary) {
+  const Extremes e = extremes(sample(orbit, 4 * samples_per_orbit), places_.names.size());
+  const std::vector<double> films = film_column(least_films(orbit.cycle, orbit.system), places_.names.size());
   const std::string head = "at." + key + ".";
   for (std::size_t i = 0; i < places_.names.size(); ++i) {
     summary.set(head + "peak_to_peak." + places_.names[i] + ".x", e.x_max[i] - e.x_min[i], places_.unit);
@@ -256,8 +249,8 @@ void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, cons
     summary.set(head + "multiplier.modulus", std::abs(stability.values.front()), "1");
     summary.set(head + "multiplier.angle", std::abs(std::arg(stability.values.front())), "rad");
   }
-  summary.set(head + "period", cycle.period, "s");
-  reported_.insert(key);
+  summary.set(head + "period", orbit.cycle.period, "s");
+  if (!reported(key)) reported_.push_back(key);
 }
 
 void CycleRecord::write(io::Group& group, bool everything) const {
@@ -265,23 +258,15 @@ void CycleRecord::write(io::Group& group, bool everything) const {
   if (birth_.rows() > 0) birth_.write(group.child("birth"));
   if (closing_.rows() > 0) closing_.write(group.child("closing"));
   if (!everything) return;
-  std::vector<double> flat;
-  for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());
-  group.put("orbits", {orbits_.size(), samples_per_orbit, places_.names.size(), 2}, std::move(flat), places_.unit,
-            "what is shown of every point");
-  group.put("reported", std::vector<std::string>(reported_.begin(), reported_.end()), "parameters already reported");
+  put_packed(group, "orbits", orbits_, "what is shown of every point");
+  put_packed(group, "reported", reported_, "parameters already reported");
 }
 
 void CycleRecord::read(const io::Group& group) {
   table_.read(group.group("branch"));
   if (group.has_group("birth")) birth_.read(group.group("birth"));
-  const auto& flat = group.reals("orbits");
-  const std::size_t width = samples_per_orbit * places_.names.size() * 2;
-  orbits_.clear();
-  for (std::size_t k = 0; k + width <= flat.size(); k += width)
-    orbits_.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(k),
-                         flat.begin() + static_cast<std::ptrdiff_t>(k + width));
-  for (const auto& key : group.strings("reported")) reported_.insert(key);
+  orbits_ = take_packed<std::vector<std::vector<double>>>(group, "orbits");
+  reported_ = take_packed<std::vector<std::string>>(group, "reported");
 }
 
 void CycleRecord::write_orbits(io::Group& group, int count) const {

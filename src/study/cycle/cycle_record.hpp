@@ -1,11 +1,12 @@
 #pragma once
 // What is kept of a branch of cycles, and how it goes into results and checkpoints.
 
-#include <set>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "study/bars/verdict.hpp"
+#include "study/state_rows.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
@@ -23,21 +24,18 @@ public:
   CycleRecord(system::ShownPlaces places, std::string unit, int multipliers);
 
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
-  void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
-              system::Plant& system, double scale);
+  void append(const solve::BranchPoint& point, const CycleOrbit& orbit, double scale);
   /// Keeps the cycle that the branch leaves from, of no amplitude at a Hopf point or run through twice at a flip: it
   /// belongs to the branch, but is no point of it.
-  void begin(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale);
+  void begin(const CycleOrbit& orbit, double scale);
   /// Keeps the cycle that the branch runs into, likewise: the simple one at a flip.
-  void close(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale);
+  void close(const CycleOrbit& orbit, double scale);
   /// Removes the last point.
   void drop_last();
   /// What pictures show of a cycle, by their axes: [place and direction][largest, smallest].
-  [[nodiscard]] std::vector<std::vector<double>> drawn(const solve::Cycle& cycle, const solve::Scheme& scheme,
-                                                       system::Plant& system) const;
+  [[nodiscard]] std::vector<std::vector<double>> drawn(const CycleOrbit& orbit) const;
   /// Largest eccentricity per clearance of any journal on a cycle.
-  [[nodiscard]] double eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
-                                    system::Plant& system) const;
+  [[nodiscard]] double eccentricity(const CycleOrbit& orbit) const;
   /// Whether all points so far are stable, or all unstable.
   [[nodiscard]] bool one_sided() const;
   /// How often the branch passes a value of the parameter, in the unit of the table.
@@ -49,9 +47,11 @@ public:
   /// The points so far, by their stability.
   [[nodiscard]] BranchVerdict verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
-  void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
-              const solve::Stability& stability, io::StudySummary& summary);
-  [[nodiscard]] bool reported(const std::string& key) const { return reported_.contains(key); }
+  void report(const std::string& key, const CycleOrbit& orbit, const solve::Stability& stability,
+              io::StudySummary& summary);
+  [[nodiscard]] bool reported(const std::string& key) const {
+    return std::ranges::find(reported_, key) != reported_.end();
+  }
 
   /// Parameter of the last point, in the unit of the branch.
   [[nodiscard]] double last_parameter() const { return table_.column("parameter").back(); }
@@ -75,15 +75,14 @@ public:
   void write_orbits(io::Group& group, int count) const;
 
 private:
-  void keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
-            double scale) const;
+  void keep(io::Table& end, const CycleOrbit& orbit, double scale) const;
   [[nodiscard]] std::vector<double> per_clearance(const std::vector<double>& radius) const;
   system::ShownPlaces places_;
   std::string unit_;
   int multipliers_;
   io::Table table_, birth_, closing_;
   std::vector<std::vector<double>> orbits_;  // per point: [time][place][x, y]
-  std::set<std::string> reported_;
+  std::vector<std::string> reported_;
 };
 
 /// `like`: null where every rank has the whole cycle, else a state of which it has these rows (see put_columns()).

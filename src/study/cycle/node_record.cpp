@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/state_rows.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -27,14 +26,13 @@ std::vector<io::Table::Column> columns(const std::string& unit, const std::vecto
 NodeRecord::NodeRecord(std::vector<int> nodes, std::string unit)
     : nodes_(std::move(nodes)), unit_(std::move(unit)), table_(columns(unit_, nodes_)) {}
 
-NodeRecord::NodeSizes NodeRecord::sizes(const solve::Cycle& cycle, const solve::Scheme& scheme,
-                                        system::Plant& system) const {
-  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
+NodeRecord::NodeSizes NodeRecord::sizes(const CycleOrbit& orbit) const {
+  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&orbit.system);
   if (nodes_.empty() || !rotor) return {};
-  StateRows states(system);
+  StateRows states(orbit.system);
   std::vector<std::vector<double>> x(nodes_.size()), y(nodes_.size());
   for (int k = 0; k < samples_per_turn; ++k) {
-    Vec state = states.vector(cycle.at(scheme, static_cast<double>(k) / samples_per_turn));
+    Vec state = states.vector(orbit.at(static_cast<double>(k) / samples_per_turn));
     const std::vector<double> shaft = rotor->shaft(state, 0, false);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const auto at = static_cast<std::size_t>(4 * (nodes_[i] - 1));
@@ -62,9 +60,8 @@ NodeRecord::NodeSizes NodeRecord::sizes(const solve::Cycle& cycle, const solve::
   return out;
 }
 
-void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                        system::Plant& system) {
-  const NodeSizes now = sizes(cycle, scheme, system);
+void NodeRecord::append(double parameter, const CycleOrbit& orbit) {
+  const NodeSizes now = sizes(orbit);
   if (!now.x.empty()) table_.append({{parameter}, now.amplitude, now.x, now.y});
 }
 
@@ -83,15 +80,14 @@ void NodeRecord::read(const io::Group& group) {
   if (!nodes_.empty()) table_.read(group.group("nodes"));
 }
 
-void ShaftOrbits::append(const std::string& what, double parameter, const solve::Cycle& cycle,
-                         const solve::Scheme& scheme, system::Plant& system) {
-  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
+void ShaftOrbits::append(const std::string& what, double parameter, const CycleOrbit& orbit) {
+  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&orbit.system);
   if (!rotor || rotor->train().rotor.type == rotor::Options::Type::rigid) return;
   z_ = rotor::node_positions(rotor->train().rotor);
-  StateRows states(system);
+  StateRows states(orbit.system);
   for (std::size_t k = 0; k < samples_in_space; ++k) {
     const double s = static_cast<double>(k) / samples_in_space;
-    const std::vector<double> shaft = rotor->shaft(states.vector(cycle.at(scheme, s)), 0, true);
+    const std::vector<double> shaft = rotor->shaft(states.vector(orbit.at(s)), 0, true);
     for (std::size_t i = 0; i < z_.size(); ++i) {
       x_.push_back(shaft[4 * i]);
       y_.push_back(shaft[4 * i + 1]);
@@ -99,7 +95,7 @@ void ShaftOrbits::append(const std::string& what, double parameter, const solve:
   }
   what_.push_back(what);
   parameter_.push_back(parameter);
-  period_.push_back(cycle.period);
+  period_.push_back(orbit.cycle.period);
 }
 
 void ShaftOrbits::write(io::Group& group) const {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "study/state_rows.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/solve/cycle/cycle.hpp"
@@ -22,10 +23,10 @@ public:
     std::vector<double> x, y;       ///< half the travel
   };
   /// Collective on the system's communicator.
-  [[nodiscard]] NodeSizes sizes(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system) const;
+  [[nodiscard]] NodeSizes sizes(const CycleOrbit& orbit) const;
   /// Adds a cycle with its parameter in the unit of the branch. Collective on the system's communicator. Nothing
   /// happens without nodes, or if the system is no rotor.
-  void append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system);
+  void append(double parameter, const CycleOrbit& orbit);
   /// Removes the last row, if there is one.
   void drop_last();
   /// Table of parameter, `amplitude` (largest distance from the mean position), `x` and `y` (half the travel) [m],
@@ -46,8 +47,7 @@ public:
   explicit ShaftOrbits(std::string unit) : unit_(std::move(unit)) {}
   /// Adds a cycle with what it is (`at`, or the kind of the bifurcation) and its parameter in the unit of the branch.
   /// Collective on the system's communicator. Nothing happens if the system is no rotor with nodes along a shaft.
-  void append(const std::string& what, double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
-              system::Plant& system);
+  void append(const std::string& what, double parameter, const CycleOrbit& orbit);
   /// `shaft`: `what`, `parameter`, `period` [s] of each cycle, `x` and `y` [m] [cycle][time][node] and the nodes' `z`;
   /// nothing without cycles.
   void write(io::Group& group) const;

@@ -107,18 +107,17 @@ LimitsOnBranch::LimitsOnBranch(const Context& context, const std::string& name) 
       if (locus->starts_from() == name) limits_.push_back({io::safe_name(locus->name()), &*locus->given().limit});
 }
 
-std::vector<double> LimitsOnBranch::of(const solve::Cycle& orbit, const solve::Scheme& scheme,
-                                       system::Plant& system) const {
+std::vector<double> LimitsOnBranch::of(const CycleOrbit& orbit) const {
   std::vector<double> out;
   for (const Limit& l : limits_) {
     const LimitOptions& limit = *l.options;
-    solve::Cycle path{orbit.mesh, {}, orbit.period, orbit.parameter};
+    solve::Cycle path{orbit.cycle.mesh, {}, orbit.cycle.period, orbit.cycle.parameter};
     if (has_place(limit)) {
-      Seen seen(limit, system);
-      path.x.resize(2, orbit.x.cols());
-      for (Eigen::Index k = 0; k < orbit.x.cols(); ++k) path.x.col(k) = seen.at(orbit.x.col(k));
+      Seen seen(limit, orbit.system);
+      path.x.resize(2, orbit.cycle.x.cols());
+      for (Eigen::Index k = 0; k < orbit.cycle.x.cols(); ++k) path.x.col(k) = seen.at(orbit.cycle.x.col(k));
     }
-    out.push_back(quantity_of(limit).of(scheme, path, system.speed()).value / limit.value.value - 1);
+    out.push_back(quantity_of(limit).of(orbit.scheme, path, orbit.system.speed()).value / limit.value.value - 1);
   }
   return out;
 }

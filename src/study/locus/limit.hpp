@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "study/located.hpp"
+#include "study/state_rows.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/solve/bifurcation/condition.hpp"
 #include "whirl/system/plant.hpp"
@@ -47,8 +48,7 @@ public:
   LimitsOnBranch(const Context& context, const std::string& name);
   [[nodiscard]] bool empty() const { return limits_.empty(); }
   /// quantity/value - 1 of each limit. Collective on the system's communicator.
-  [[nodiscard]] std::vector<double> of(const solve::Cycle& orbit, const solve::Scheme& scheme,
-                                       system::Plant& system) const;
+  [[nodiscard]] std::vector<double> of(const CycleOrbit& orbit) const;
   /// The same of a point of the branch, for the range that it covers.
   void see(const std::vector<double>& at_point);
   void pass(std::size_t limit, const solve::Cycle& cycle);

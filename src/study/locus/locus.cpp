@@ -11,6 +11,7 @@
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/bifurcation.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/cycle/cycle_record.hpp"
@@ -344,22 +345,20 @@ StudyResult LocusFollower::run() {
   put_groups(results.summary(), system_->train());
   auto& group = results.group();
   put_curve(all, bars_of(all, back.size()));
-  std::vector<std::string> types;
-  std::vector<double> first, second, first_bar, second_bar;
-  for (const auto& c : results.summary().codimension_two) {
-    types.push_back(c.type);
-    first.push_back(c.value.value);
-    second.push_back(c.second_value.value);
-    const auto bar = c.more.find("value_uncertainty");
-    first_bar.push_back(bar == c.more.end() ? io::no_value : bar->second);
-    second_bar.push_back(c.uncertainty);
-  }
+  using Special = io::CodimensionTwo;
+  const auto& special = results.summary().codimension_two;
+  const auto bar = [](const Special& c) {
+    return c.more.contains("value_uncertainty") ? c.more.at("value_uncertainty") : io::no_value;
+  };
   auto& points = group.child("codimension_two");
-  points.put("type", types, "kind of point");
-  points.put("parameter", first, first_range_.unit, "first parameter");
-  points.put("second", second, range.unit, "second parameter");
-  points.put("parameter_uncertainty", first_bar, first_range_.unit, "estimated error of the first parameter");
-  points.put("second_uncertainty", second_bar, range.unit, "of the second one");
+  points.put("type", column(special, &Special::type), "kind of point");
+  points.put("parameter", column(special, [](const Special& c) { return c.value.value; }), first_range_.unit,
+             "first parameter");
+  points.put("second", column(special, [](const Special& c) { return c.second_value.value; }), range.unit,
+             "second parameter");
+  points.put("parameter_uncertainty", column(special, bar), first_range_.unit,
+             "estimated error of the first parameter");
+  points.put("second_uncertainty", column(special, &Special::uncertainty), range.unit, "of the second one");
   group.set("of", options_.of);
   group.set("parameter", first_.path);
   group.set("parameter_unit", first_range_.unit);
