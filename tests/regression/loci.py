@@ -165,6 +165,14 @@ def main():
         h.close("points where it bends: off the lines", off_the_lines(curve), 0, 1.2e-3)
         h.close("the curve ends at a* =", curve["second"][-1] / CLEARANCE, 0.2, 1e-9)
         h.close("flip at a* = 0.2, Omega*", curve["parameter"][-1] / SPEED, 2.874299, 1e-5)
+    # A bend is cut by steps that turn by beta_1: a smaller angle takes more points.
+    counts = []
+    for angle in ("30 deg", "3 deg"):
+        bent = h.run((h.source / "inputs/rigid_rotor/loci.yaml").resolve(), f"beta {angle[:-4]}",
+                     overrides=["studies.2.locus.range={from: 2 um, to: 5 um}", "studies.2.locus.picture_tolerance=0",
+                                f"studies.2.locus.beta_1={angle}", "bars=none"])
+        counts.append(bent["flips"]["points"])
+    h.true("beta_1 of a curve bounds its turns", counts[1] > counts[0], counts)
     # The first Lyapunov coefficient changes its sign on the way to F0* = 2: single points are subcritical at a load of
     # 0.99 N and supercritical at 1.025 N.
     curve = ends(h, "hopf", HOPF, "branch", "hopf", "rotor.load", "1.28 N")
