@@ -88,8 +88,8 @@ void CycleFollower::save(const solve::ResumePoint& at, Vec u, Vec tangent) {
     io::Group& nearest = state.child("nearest");
     write_cycle(nearest.child("cycle"), nearest_->cycle, stored());
     put_packed(nearest, "point", *nearest_, "of which the cycle is");
-    nearest.set("leaves", leaves_ ? 1 : 0);
   }
+  state.set("leaves", leaves_ ? 1 : 0);
   state.set("period_scale", problem_->period_scale());
   solve::BranchPoint now = at.point;
   now.slope = solve::last_entry(problem_->comm(), tangent);
@@ -141,8 +141,8 @@ std::optional<solve::Restart> CycleFollower::restore() {
     const io::Group& nearest = state.group("nearest");
     nearest_ = take_packed<Watched>(nearest, "point");
     nearest_->cycle = read_cycle(nearest.group("cycle"), stored());
-    leaves_ = nearest.integer("leaves") != 0;
   }
+  leaves_ = state.integer("leaves") != 0;
   filled_ = restart.point.filled;
   largest_ = state.real("largest_difference");
   const CycleOrbit orbit = orbit_of(restart.u.get());
