@@ -76,6 +76,9 @@ def finite_curve(h):
     found = run["unbalanced"]["bifurcations"]
     h.true("one flip, nothing else", [b["type"] for b in found] == ["flip"])
     converged(h, "first flip", h.work / "curve/results.h5", "fine", 1, FINITE_FLIPS[0], (1.2, 2.5))
+    limit = run["fine"]["bifurcations"][0]
+    parts = sum(limit[f"uncertainty_{part}"] for part in ("film_mesh", "time_mesh", "location"))
+    h.close("fine: the parts of the bar are the whole bar", parts, limit["uncertainty"], 1e-9 * limit["uncertainty"])
 
 
 def whole_curve(h):

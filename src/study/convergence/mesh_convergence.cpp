@@ -171,6 +171,7 @@ StudyResult MeshConvergence::run(Context& context) {
     b.criticality_by = "see the branch";
     b.more["uncertainty_film_mesh"] = limit.error;
     b.more["uncertainty_time_mesh"] = now.time_error;
+    b.more["uncertainty_location"] = now.bracket.back();
     b.more["observed_order"] = limit.order;
     for (std::size_t k = 0; k < now.value.size(); ++k) {
       b.more[fmt::format("refined_{}", 1 << k)] = now.value[k];
