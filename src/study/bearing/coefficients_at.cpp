@@ -14,21 +14,6 @@ namespace {
 
 constexpr double beside = 1e-6;  // clearances
 
-// Largest difference of two, of the largest entry of their kind.
-double apart(const film::PortCoefficients& a, const film::PortCoefficients& b) {
-  double out = 0;
-  for (const auto of : {&film::PortCoefficients::stiffness, &film::PortCoefficients::damping}) {
-    double most = 0, size = 0;
-    for (std::size_t i = 0; i < 2; ++i)
-      for (std::size_t j = 0; j < 2; ++j) {
-        most = std::max(most, std::abs((a.*of)[i][j] - (b.*of)[i][j]));
-        size = std::max(size, std::abs((b.*of)[i][j]));
-      }
-    if (size > 0) out = std::max(out, most / size);
-  }
-  return out;
-}
-
 }  // namespace
 
 void AtSpeed::fill(std::size_t ports, std::size_t frequencies, std::size_t amplitudes) {
@@ -80,7 +65,7 @@ AtSpeed coefficients_at(film::Film& film, const DynamicCoefficientsOptions& opti
           near = first(there);
         })) {
       constexpr double same = 0.01;
-      if (const film::PortCoefficients own = first(now.place); apart(own, *near) > same) {
+      if (const film::PortCoefficients own = first(now.place); difference(own, *near, 2) > same) {
         now.centre = own;
         now.place = std::move(there);
       }

@@ -1,6 +1,7 @@
 #pragma once
 // Stiffness and damping of one film at one speed, as a checkpoint keeps them.
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -25,6 +26,10 @@ struct AtSpeed {
   std::string reason;            ///< empty: there are coefficients
   std::optional<Capacity> most;  ///< of a film that does not carry the load
   [[nodiscard]] bool found() const { return reason.empty(); }
+  /// Of the journal, in clearances.
+  [[nodiscard]] double eccentricity(double clearance) const {
+    return std::hypot(place.motion.position[0], place.motion.position[1]) / clearance;
+  }
   /// As many coefficients that are not numbers.
   void fill(std::size_t ports, std::size_t frequencies, std::size_t amplitudes);
   void members(auto& archive) {

@@ -3,15 +3,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <memory>
 #include <utility>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/bars/table_bars.hpp"
 #include "study/bearing/coefficients_at.hpp"
 #include "study/bearing/enforced_motion.hpp"
 #include "study/bearing/held_film.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/lost_points.hpp"
 #include "study/pieces.hpp"
@@ -48,21 +50,6 @@ std::vector<std::vector<std::vector<EnforcedAt>>> enforced_of(const std::vector<
   return out;
 }
 
-// Every number that may have a bar, in the order of the tables: places, then entries of K and B.
-std::vector<double> numbers_of(const std::vector<AtSpeed>& found) {
-  std::vector<double> out;
-  for (const AtSpeed& a : found) out.insert(out.end(), {a.place.motion.position[0], a.place.motion.position[1]});
-  if (found.empty()) return out;
-  const std::size_t n = found.front().coefficients.front().ports;
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      for (const AtSpeed& a : found)
-        for (const film::PortCoefficients& c : a.coefficients)
-          out.insert(out.end(), {c.stiffness[i][j], c.damping[i][j]});
-  add_numbers(enforced_of(found), out);
-  return out;
-}
-
 void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& options, double clearance,
                  const std::vector<AtSpeed>& found) {
   for (std::size_t s = 0; s < found.size(); ++s) {
@@ -73,7 +60,7 @@ void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& op
     summary.set(head + "speed", deck::from_si(options.speeds[s].value, options.speeds[s].unit), options.speeds[s].unit);
     summary.set(head + "x", at[0], "m");
     summary.set(head + "y", at[1], "m");
-    summary.set(head + "eccentricity", std::hypot(at[0], at[1]) / clearance, "1");
+    summary.set(head + "eccentricity", a.eccentricity(clearance), "1");
     summary.set(head + "min_thickness", a.thickness, "m");
     summary.set(head + "force.x", a.place.force[0], "N");
     summary.set(head + "force.y", a.place.force[1], "N");
@@ -85,62 +72,43 @@ void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& op
   }
 }
 
-// One table of K or B entries [speed][frequency] with bars.
+// Places of the journal, and K and B entries [speed][frequency].
 void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, double clearance,
-                const std::vector<AtSpeed>& found, const Bars* bars) {
-  const std::vector<double> ratios = options.all_frequencies();
-  std::vector<double> speeds, x, y, e, thickness, force_x, force_y;
-  std::vector<std::string> reasons;
-  for (const AtSpeed& a : found) {
-    const auto& at = a.place.motion.position;
-    speeds.push_back(a.place.motion.speed);
-    reasons.push_back(a.reason);
-    x.push_back(at[0]);
-    y.push_back(at[1]);
-    e.push_back(std::hypot(at[0], at[1]) / clearance);
-    thickness.push_back(a.thickness);
-    force_x.push_back(a.place.force[0]);
-    force_y.push_back(a.place.force[1]);
-  }
+                const std::vector<AtSpeed>& found) {
+  const std::vector<double> ratios = options.all_frequencies(), speeds = column(options.speeds, &deck::Quantity::value);
+  const auto position = [&](std::size_t axis) {
+    return column(found, [axis](const AtSpeed& a) { return a.place.motion.position[axis]; });
+  };
+  const auto force = [&](std::size_t axis) {
+    return column(found, [axis](const AtSpeed& a) { return a.place.force[axis]; });
+  };
   auto& places = group.child("places");
   places.put("speed", speeds, "rad/s", "shaft speed");
-  places.put("x", x, "m", "place of the journal, to the right of the bearing centre");
-  places.put("y", y, "m", "place of the journal, above the bearing centre");
-  places.put("eccentricity", e, "1", "in clearances");
-  places.put("min_thickness", thickness, "m", "least thickness of the film");
-  places.put("force_x", force_x, "N", "of the film on the journal");
-  places.put("force_y", force_y, "N", "of the film on the journal");
-  if (std::ranges::any_of(reasons, [](const std::string& why) { return !why.empty(); }))
-    places.put("reason", std::move(reasons), "why a speed has no coefficients; empty: it has");
+  places.put("x", position(0), "m", "place of the journal, to the right of the bearing centre");
+  places.put("y", position(1), "m", "place of the journal, above the bearing centre");
+  places.put("eccentricity", column(found, [&](const AtSpeed& a) { return a.eccentricity(clearance); }), "1",
+             "in clearances");
+  places.put("min_thickness", column(found, &AtSpeed::thickness), "m", "least thickness of the film");
+  places.put("force_x", force(0), "N", "of the film on the journal");
+  places.put("force_y", force(1), "N", "of the film on the journal");
+  if (!std::ranges::all_of(found, &AtSpeed::found))
+    places.put("reason", column(found, &AtSpeed::reason), "why a speed has no coefficients; empty: it has");
   auto& table = group.child("coefficients");
   table.put("speed", speeds, "rad/s", "shaft speed");
   table.put("ratio", ratios, "1", "frequency over speed, omega/Omega");
-  const io::Shape shape{speeds.size(), ratios.size()};
-  const std::size_t n = found.front().coefficients.front().ports;
-  std::size_t next = 2 * found.size();
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) {
-      std::array<std::vector<double>, 2> values, errors;
-      for (const AtSpeed& a : found)
-        for (const film::PortCoefficients& c : a.coefficients) {
-          values[0].push_back(c.stiffness[i][j]);
-          values[1].push_back(c.damping[i][j]);
-          for (std::size_t k = 0; k < 2; ++k, ++next)
-            if (bars) errors[k].push_back((*bars)[next].total());
-        }
-      for (std::size_t k = 0; k < 2; ++k) {
-        const std::string name = (k == 0 ? "k_" : "c_") + pair_name(i, j, "_");
-        const char* unit = (k == 0 ? stiffness_units : damping_units)[slopes_in(i, j)];
-        const char* what = k == 0 ? "stiffness" : "damping";
-        table.put(name, shape, values[k], unit, fmt::format("{} [speed][frequency]", what));
-        if (bars)
-          table.put(name + "_uncertainty", shape, errors[k], unit,
-                    fmt::format("estimated error of {} from the film mesh", name));
-      }
-    }
+  std::vector<film::PortCoefficients> all;
+  for (const AtSpeed& a : found) all.insert(all.end(), a.coefficients.begin(), a.coefficients.end());
+  put_matrices(table, {speeds.size(), ratios.size()}, "[speed][frequency]", all);
   table.label_each({io::labels_of(ratios)});
-  if (!options.amplitudes.empty())
-    put_enforced_tables(group, speeds, ratios, options.amplitudes, enforced_of(found), bars, next);
+  if (!options.amplitudes.empty()) put_enforced_tables(group, speeds, ratios, options.amplitudes, enforced_of(found));
+}
+
+// Bars of K and B.
+TableBars bars_of(io::Group& table, const MeshLaw& law) {
+  std::vector<std::string> names;
+  for (const auto& [name, data] : table.datasets())
+    if (name.starts_with("k_") || name.starts_with("c_")) names.push_back(name);
+  return {table, std::move(names), law};
 }
 
 }  // namespace
@@ -165,9 +133,9 @@ StudyResult DynamicCoefficients::run(Context& context) {
       distribute_pieces(context, plan(context, Sharing::films), 1 + meshes.size(), on, pieces, "mesh");
   if (!on_meshes[0].found) throw core::NotConverged(on_meshes[0].reason);
   const std::vector<AtSpeed>& found = *on_meshes[0].found;
-  std::vector<std::string> speeds, reasons;
-  for (const deck::Quantity& q : options.speeds) speeds.push_back(number_text(q.value, q.unit) + " " + q.unit);
-  for (const AtSpeed& a : found) reasons.push_back(a.reason);
+  const std::vector<std::string> reasons = column(found, &AtSpeed::reason);
+  const std::vector<std::string> speeds =
+      column(options.speeds, [](const deck::Quantity& q) { return number_text(q.value, q.unit) + " " + q.unit; });
   const auto none = std::ranges::find_if(found, [](const AtSpeed& a) { return a.most.has_value(); });
   if (none != found.end()) {
     summary.set("capacity.load", none->most->load, "N");
@@ -182,20 +150,25 @@ StudyResult DynamicCoefficients::run(Context& context) {
   for (std::string& line : lost_motions(enforced_of(found), speeds, options.all_frequencies(), options.amplitudes))
     summary.warnings.push_back(std::move(line));
 
+  put_tables(group, options, clearance, found);
   const MeshLaw law = law_of(context.machine, context.layout);
-  Bars bars(numbers_of(found), law);
   SummaryBars of_summary(summary, law);
+  std::map<std::string, TableBars> of_tables;
+  for (const char* name : {"coefficients", "enforced"})
+    if (group.has_group(name)) of_tables.emplace(name, bars_of(group.child(name), law));
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const std::vector<AtSpeed> other = on_meshes[m + 1].found.value_or(std::vector<AtSpeed>());
     io::StudySummary there;
     put_summary(there, options, clearance, other);
     of_summary.add(meshes[m].axis, meshes[m].spacing, there);
-    bars.add(meshes[m].axis, meshes[m].spacing, numbers_of(other));
+    io::Group tables;
+    if (!other.empty()) put_tables(tables, options, clearance, other);
+    for (auto& [name, bars] : of_tables) bars.add(meshes[m].axis, meshes[m].spacing, tables.child(name));
   }
   of_summary.write(place_tolerance);
+  for (auto& [name, bars] : of_tables) bars.write();
 
   group.set("bearing", context.machine.bearings[which].name);
-  put_tables(group, options, clearance, found, meshes.empty() ? nullptr : &bars);
   const auto lost = static_cast<std::size_t>(std::ranges::count_if(reasons, [](const auto& r) { return !r.empty(); }));
   summary.points = static_cast<long>(found.size() - lost);
   if (lost > 0) return context.results.finish(status_of(lost, found.size(), "speeds", "coefficients"), true);

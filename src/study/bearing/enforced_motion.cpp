@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "study/bars/summary_bars.hpp"
+#include "study/columns.hpp"
 #include "whirl/film/use/enforced.hpp"
 
 namespace whirl::study {
@@ -24,12 +25,6 @@ void each(const All& found, const Visit& visit) {
       for (const EnforcedAt& a : frequency) visit(a);
 }
 
-std::size_t ports_of(const All& found) {
-  std::size_t out = 0;
-  each(found, [&](const EnforcedAt& a) { out = std::max(out, a.coefficients.ports); });
-  return out;
-}
-
 void fill(EnforcedAt& out, std::size_t port, const film::EnforcedForces& f) {
   for (std::size_t i = 0; i < out.coefficients.ports; ++i) {
     out.coefficients.stiffness[i][port] = f.stiffness[i];
@@ -39,10 +34,11 @@ void fill(EnforcedAt& out, std::size_t port, const film::EnforcedForces& f) {
   out.tail[port] = f.tail;
 }
 
-// Of entries that have a size: shifts by shifts and slopes by slopes.
-double difference(const film::PortCoefficients& a, const film::PortCoefficients& b) {
+}  // namespace
+
+double difference(const film::PortCoefficients& a, const film::PortCoefficients& b, std::size_t ports) {
   double out = 0;
-  for (std::size_t block = 0; block < b.ports; block += 2)
+  for (std::size_t block = 0; block < ports; block += 2)
     for (const auto of : {&film::PortCoefficients::stiffness, &film::PortCoefficients::damping}) {
       double most = 0, size = 0;
       for (std::size_t i = block; i < block + 2; ++i)
@@ -55,8 +51,6 @@ double difference(const film::PortCoefficients& a, const film::PortCoefficients&
     }
   return out;
 }
-
-}  // namespace
 
 std::vector<EnforcedAt> enforced_at(film::Film& film, const film::Geometry& bore, const JournalPlace& at, double omega,
                                     std::span<const double> amplitudes, const film::PortCoefficients& perturbation) {
@@ -76,7 +70,7 @@ std::vector<EnforcedAt> enforced_at(film::Film& film, const film::Geometry& bore
       fill(now, port, none);
       (void)has_answer([&] { fill(now, port, enforced.along(port, size)); }, &now.lost[port]);
     }
-    now.apart = difference(now.coefficients, perturbation);
+    now.apart = difference(now.coefficients, perturbation, perturbation.ports);
   }
   return out;
 }
@@ -144,43 +138,32 @@ std::array<std::size_t, 2> motions_without_values(const All& found) {
   return out;
 }
 
-void add_numbers(const All& found, std::vector<double>& numbers) {
-  const std::size_t n = ports_of(found);
+void put_matrices(io::Group& table, const io::Shape& shape, const std::string& axes,
+                  const std::vector<film::PortCoefficients>& all) {
+  const std::size_t n = all.front().ports;
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      each(found, [&](const EnforcedAt& a) {
-        numbers.insert(numbers.end(), {a.coefficients.stiffness[i][j], a.coefficients.damping[i][j]});
-      });
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto put = [&](const char* letter, const char* unit, const std::string& what, const auto of) {
+        table.put(letter + pair_name(i, j, "_"), shape,
+                  column(all, [&](const film::PortCoefficients& c) { return (c.*of)[i][j]; }), unit, what + " " + axes);
+      };
+      put("k_", stiffness_units[slopes_in(i, j)], "stiffness", &film::PortCoefficients::stiffness);
+      put("c_", damping_units[slopes_in(i, j)], "damping", &film::PortCoefficients::damping);
+    }
 }
 
 void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, const std::vector<double>& ratios,
-                         const std::vector<double>& amplitudes, const All& found, const Bars* bars, std::size_t next) {
+                         const std::vector<double>& amplitudes, const All& found) {
   auto& table = group.child("enforced");
   table.put("speed", speeds, "rad/s", "shaft speed");
   table.put("ratio", ratios, "1", "frequency over speed, omega/Omega");
   table.put("amplitude", amplitudes, "1",
             "0 to peak of the motion along x and y, in clearances; of slopes over twice the length of the bearing");
   const io::Shape shape{speeds.size(), ratios.size(), amplitudes.size()};
-  const std::size_t n = ports_of(found);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) {
-      std::array<std::vector<double>, 2> values, errors;
-      each(found, [&](const EnforcedAt& a) {
-        values[0].push_back(a.coefficients.stiffness[i][j]);
-        values[1].push_back(a.coefficients.damping[i][j]);
-        for (std::size_t k = 0; k < 2; ++k, ++next)
-          if (bars) errors[k].push_back((*bars)[next].total());
-      });
-      for (std::size_t k = 0; k < 2; ++k) {
-        const std::string name = (k == 0 ? "k_" : "c_") + pair_name(i, j, "_");
-        const char* unit = (k == 0 ? stiffness_units : damping_units)[slopes_in(i, j)];
-        table.put(name, shape, values[k], unit,
-                  fmt::format("{} [speed][frequency][amplitude]", k == 0 ? "stiffness" : "damping"));
-        if (bars)
-          table.put(name + "_uncertainty", shape, errors[k], unit,
-                    fmt::format("estimated error of {} from the film mesh", name));
-      }
-    }
+  std::vector<film::PortCoefficients> all;
+  each(found, [&](const EnforcedAt& a) { all.push_back(a.coefficients); });
+  put_matrices(table, shape, "[speed][frequency][amplitude]", all);
+  const std::size_t n = all.front().ports;
   for (std::size_t j = 0; j < n; ++j) {
     std::vector<double> left, tail;
     std::vector<std::string> reasons;

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "study/bars/error_bar.hpp"
 #include "study/bearing/film_at_rest.hpp"
 #include "whirl/film/contract/film.hpp"
 #include "whirl/io/record.hpp"
@@ -45,13 +44,13 @@ void put_enforced(io::StudySummary& summary, const std::string& head, std::span<
 [[nodiscard]] std::array<std::size_t, 2> motions_without_values(
     const std::vector<std::vector<std::vector<EnforcedAt>>>& found);
 
-/// Their numbers that may have bars, in the order in which put_enforced_tables() takes these: K and B by entry.
-void add_numbers(const std::vector<std::vector<std::vector<EnforcedAt>>>& found, std::vector<double>& numbers);
-/// Tables [speed][frequency][amplitude]; bars from number `next` on, null: none.
+/// Tables [speed][frequency][amplitude].
 void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, const std::vector<double>& ratios,
                          const std::vector<double>& amplitudes,
-                         const std::vector<std::vector<std::vector<EnforcedAt>>>& found, const Bars* bars,
-                         std::size_t next);
+                         const std::vector<std::vector<std::vector<EnforcedAt>>>& found);
+/// Largest difference from the entries of b in the same block, shifts by shifts and slopes by slopes, of the largest
+/// of these, over the first `ports`. Not a number where an entry is none.
+[[nodiscard]] double difference(const film::PortCoefficients& a, const film::PortCoefficients& b, std::size_t ports);
 
 /// xx, xy, ..., and with slopes x.slope_x, ...; what stands `between` only there.
 inline constexpr std::array<const char*, 4> port_words = {"x", "y", "slope_x", "slope_y"};
@@ -67,5 +66,8 @@ inline constexpr std::array<const char*, 3> stiffness_units = {"N/m", "N", "N m"
 /// K.xx, C.xx, ... under `head`, but for motions along ports that `skip` says.
 void put_matrices(io::StudySummary& summary, const std::string& head, const film::PortCoefficients& c,
                   const std::function<bool(std::size_t port)>& skip = {});
+/// Columns k_xx, c_xx, ... of `all`, in the order of the shape, whose axes the descriptions name.
+void put_matrices(io::Group& table, const io::Shape& shape, const std::string& axes,
+                  const std::vector<film::PortCoefficients>& all);
 
 }  // namespace whirl::study
