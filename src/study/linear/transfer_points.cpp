@@ -9,6 +9,7 @@
 #include "study/linear/response_peaks.hpp"
 #include "study/linear/synchronous.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/deck/codecs.hpp"
 #include "whirl/rotor/freedom.hpp"
 
 namespace whirl::study {
@@ -18,17 +19,10 @@ using Complex = std::complex<double>;
 
 namespace {
 
-template <class E>
-std::string word(E value) {
-  for (const auto& n : names(value))
-    if (n.value == value) return std::string(n.name);
-  return {};
-}
-
 template <class Point>
 std::string place(const Point& p) {
   return (p.bearing.empty() ? fmt::format("node.{}.", *p.node) : fmt::format("bearing.{}.", p.bearing)) +
-         word(p.direction);
+         std::string(deck::name_of(p.direction));
 }
 
 bool is_slope(Along a) {
@@ -54,7 +48,9 @@ std::string label(const TransferInput& input) {
 }
 
 std::string label(const TransferOutput& output) {
-  return place(output) + (output.quantity == TransferOutput::Quantity::displacement ? "" : "." + word(output.quantity));
+  return place(output) + (output.quantity == TransferOutput::Quantity::displacement
+                              ? ""
+                              : "." + std::string(deck::name_of(output.quantity)));
 }
 
 std::string unit_of(const TransferOutput& output, const TransferInput& input) {
@@ -67,6 +63,24 @@ std::string unit_of(const TransferOutput& output, const TransferInput& input) {
 
 TransferOutput output_of(const TransferInput& input) {
   return {input.node, input.bearing, input.direction, TransferOutput::Quantity::displacement};
+}
+
+std::vector<double> load_on(const rotor::Rotor& rotor, int node, rotor::Freedom freedom, double amount) {
+  const rotor::Matrices& m = rotor.matrices();
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(m.mass.get()));
+  PetscInt here = 0;
+  check(MatGetLocalSize(m.mass.get(), &here, nullptr));
+  core::Vector full, on = core::make_vector(comm, here, PETSC_DETERMINE);
+  const bool reduced = static_cast<bool>(m.basis);
+  if (reduced) check(MatCreateVecs(m.basis.get(), nullptr, full.put()));
+  Vec to = reduced ? full.get() : on.get();
+  check(VecSet(to, 0.0));
+  const PetscInt row = reduced ? rotor::full_coordinate(node, freedom) : rotor.coordinate(node, freedom);
+  if (core::rank_of(comm) == 0) check(VecSetValue(to, row, amount, ADD_VALUES));
+  check(VecAssemblyBegin(to));
+  check(VecAssemblyEnd(to));
+  if (reduced) check(MatMultTranspose(m.basis.get(), to, on.get()));
+  return core::gather(on.get());
 }
 
 TransferMatrix::TransferMatrix(system::RotorSystem& system, const std::vector<TransferInput>& inputs,
@@ -86,29 +100,15 @@ TransferMatrix::TransferMatrix(system::RotorSystem& system, const std::vector<Tr
 
 // A unit force on the coordinates, whole on every rank.
 std::vector<double> TransferMatrix::load(const TransferInput& input) const {
-  std::vector<double> out(static_cast<std::size_t>(system_.coordinates()), 0.0);
-  const auto add = [&](PetscInt coordinate, double value) { out[static_cast<std::size_t>(coordinate)] += value; };
   if (!input.bearing.empty()) {
+    std::vector<double> out(static_cast<std::size_t>(system_.coordinates()), 0.0);
     const int b = bearing_of(system_, input.bearing), d = static_cast<int>(input.direction);
-    add(system_.journal(b, d), 1);
-    if (system_.pedestal(b, d) >= 0) add(system_.pedestal(b, d), -1);
+    out[static_cast<std::size_t>(system_.journal(b, d))] += 1;
+    if (const PetscInt pedestal = system_.pedestal(b, d); pedestal >= 0) out[static_cast<std::size_t>(pedestal)] -= 1;
     return out;
   }
-  const rotor::Matrices& m = system_.rotor().matrices();
-  if (!m.basis) {
-    add(system_.rotor().coordinate(*input.node, freedom_of(input.direction)), 1);
-    return out;
-  }
-  core::Vector full, reduced;
-  check(MatCreateVecs(m.basis.get(), reduced.put(), full.put()));
-  check(VecSet(full.get(), 0));
-  if (core::rank_of(system_.comm()) == 0)
-    check(VecSetValue(full.get(), rotor::full_coordinate(*input.node, freedom_of(input.direction)), 1, ADD_VALUES));
-  check(VecAssemblyBegin(full.get()));
-  check(VecAssemblyEnd(full.get()));
-  check(MatMultTranspose(m.basis.get(), full.get(), reduced.get()));
-  const std::vector<double> shares = core::gather(reduced.get());
-  std::copy(shares.begin(), shares.end(), out.begin());
+  std::vector<double> out = load_on(system_.rotor(), *input.node, freedom_of(input.direction));
+  out.resize(static_cast<std::size_t>(system_.coordinates()), 0.0);
   return out;
 }
 

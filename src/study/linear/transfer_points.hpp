@@ -19,6 +19,11 @@ namespace whirl::study {
 /// The displacement along an input.
 [[nodiscard]] TransferOutput output_of(const TransferInput& input);
 
+/// What `amount` of force [N] or moment [N m] on a freedom of a node is on the coordinates of the rotor, through T^T
+/// where it is reduced, whole on every rank. Collective.
+[[nodiscard]] std::vector<double> load_on(const rotor::Rotor& rotor, int node, rotor::Freedom freedom,
+                                          double amount = 1);
+
 /// A transfer matrix at one frequency [output][input], all of an output behind each other.
 struct Transfer {
   std::vector<std::complex<double>> values;

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "study/linear/transfer_points.hpp"
+
 namespace whirl::study {
 
 std::span<const deck::Name<ForceOptions::Direction>> names(ForceOptions::Direction) {
@@ -62,23 +64,11 @@ int node_of(const ForceOptions& force, const system::Machine& machine) {
   return force.node ? *force.node : machine.bearings[*system::find_bearing(machine, *force.bearing)].node;
 }
 
-std::vector<double> load_on(const rotor::Rotor& rotor, int node, rotor::Freedom freedom, double amount) {
-  using core::check;
-  const rotor::Matrices& m = rotor.matrices();
-  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(m.mass.get()));
-  PetscInt here = 0;
-  check(MatGetLocalSize(m.mass.get(), &here, nullptr));
-  core::Vector full, on = core::make_vector(comm, here, PETSC_DETERMINE);
-  const bool reduced = static_cast<bool>(m.basis);
-  if (reduced) check(MatCreateVecs(m.basis.get(), nullptr, full.put()));
-  Vec to = reduced ? full.get() : on.get();
-  check(VecSet(to, 0.0));
-  const PetscInt row = reduced ? rotor::full_coordinate(node, freedom) : rotor.coordinate(node, freedom);
-  if (core::rank_of(comm) == 0) check(VecSetValue(to, row, amount, ADD_VALUES));
-  check(VecAssemblyBegin(to));
-  check(VecAssemblyEnd(to));
-  if (reduced) check(MatMultTranspose(m.basis.get(), to, on.get()));
-  return core::gather(on.get());
+std::vector<transient::Forces::Entry> entries_of(const std::vector<double>& load) {
+  std::vector<transient::Forces::Entry> column;
+  for (std::size_t q = 0; q < load.size(); ++q)
+    if (load[q] != 0) column.push_back({static_cast<PetscInt>(2 * q), load[q]});
+  return column;
 }
 
 transient::Forces make_forces(const std::vector<ForceOptions>& forces, const system::Machine& machine,
@@ -88,10 +78,7 @@ transient::Forces make_forces(const std::vector<ForceOptions>& forces, const sys
     const std::vector<double> load =
         load_on(dynamic_cast<const system::RotorSystem&>(system).rotor(), node_of(f, machine),
                 static_cast<rotor::Freedom>(static_cast<int>(f.direction)), f.arm.value_or(1));
-    std::vector<transient::Forces::Entry> column;
-    for (std::size_t q = 0; q < load.size(); ++q)
-      if (load[q] != 0) column.push_back({static_cast<PetscInt>(2 * q), load[q]});
-    out.add(transient::make_signal(f.signal), std::move(column));
+    out.add(transient::make_signal(f.signal), entries_of(load));
   }
   return out;
 }

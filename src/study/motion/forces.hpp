@@ -30,10 +30,8 @@ void check_forces(const std::string& key, const std::vector<ForceOptions>& force
 
 /// The node at which a force acts on a machine that was checked.
 [[nodiscard]] int node_of(const ForceOptions& force, const system::Machine& machine);
-/// What `amount` of force [N] or moment [N m] on a freedom of a node is on the coordinates of the rotor, through T^T
-/// where it is reduced, whole on every rank; coordinate q stands in row 2 q of F. Collective.
-[[nodiscard]] std::vector<double> load_on(const rotor::Rotor& rotor, int node, rotor::Freedom freedom,
-                                          double amount = 1);
+/// A load on the coordinates as it stands in F: coordinate q in row 2 q.
+[[nodiscard]] std::vector<transient::Forces::Entry> entries_of(const std::vector<double>& load);
 /// Forces for an integrator of `system`, which is that of a machine that was checked. Collective.
 [[nodiscard]] transient::Forces make_forces(const std::vector<ForceOptions>& forces, const system::Machine& machine,
                                             const system::Plant& system);

@@ -19,6 +19,10 @@ constexpr std::size_t signals = LinearityRecord::signals;
 constexpr long between_looks = 16;
 constexpr std::size_t excerpt_samples = 2000;
 
+std::vector<TransferInput> along_both(int node) {
+  return {{node, "", Along::x}, {node, "", Along::y}};
+}
+
 int node_of(const LinearityOptions& o, const system::Machine& machine) {
   if (o.node) return *o.node;
   return machine.bearings[o.bearing ? *system::find_bearing(machine, *o.bearing) : 0].node;
@@ -38,7 +42,7 @@ LinearityRunner::LinearityRunner(const Context& context, const Layout& layout, c
       x_(core::duplicate(rest_.get())),
       columns_{load_on(system_.rotor(), node_, rotor::Freedom::x), load_on(system_.rotor(), node_, rotor::Freedom::y)},
       films_(system_.places()),
-      response_(system_) {}
+      response_(system_, along_both(node_), {output_of(along_both(node_)[0]), output_of(along_both(node_)[1])}) {}
 
 // Displacement and force at one place do work with each other: the same column says what the one is of the coordinates
 // and the other on them.
@@ -59,11 +63,8 @@ std::array<double, 2> LinearityRunner::watched(Vec x) const {
 LinearityRecord LinearityRunner::record(double level, const std::function<void(double)>& say) {
   transient::Forces forces;
   for (int d = 0; d < 2; ++d) {
-    std::vector<transient::Forces::Entry> column;
     const auto& load = columns_[static_cast<std::size_t>(d)];
-    for (std::size_t q = 0; q < load.size(); ++q)
-      if (load[q] != 0) column.push_back({static_cast<PetscInt>(2 * q), load[q]});
-    forces.add(transient::make_signal(noise_of(options_, level, d)), std::move(column));
+    forces.add(transient::make_signal(noise_of(options_, level, d)), entries_of(load));
   }
   const double rate = rate_of(options_);
   transient::Integrator integrator(system_, {options_.speed.value}, rest_.get(),
@@ -113,28 +114,11 @@ LinearityRecord LinearityRunner::record(double level, const std::function<void(d
 }
 
 std::vector<double> LinearityRunner::linear(double frequency) {
-  PetscInt begin = 0, end = 0;
-  core::check(VecGetOwnershipRange(rest_.get(), &begin, &end));
-  std::vector<double> out(8);
-  std::vector<std::complex<double>> right(static_cast<std::size_t>(end - begin));
+  std::vector<double> out;
   response_.linearise(rest_.get());
-  response_.factorise({0, 2 * std::numbers::pi * frequency});
-  for (std::size_t force = 0; force < 2; ++force) {
-    std::ranges::fill(right, 0.0);
-    const auto last = static_cast<PetscInt>(2 * columns_[force].size());
-    for (PetscInt row = begin + begin % 2; row < std::min(end, last); row += 2)
-      right[static_cast<std::size_t>(row - begin)] = columns_[force][static_cast<std::size_t>(row / 2)];
-    const std::vector<std::complex<double>> amplitude = response_.respond(right);
-    for (std::size_t part = 0; part < 2; ++part) {
-      {
-        const core::WriteArray a(x_.get());
-        const auto value = [part](std::complex<double> z) { return part == 0 ? z.real() : z.imag(); };
-        std::ranges::transform(amplitude, a.data(), value);
-      }
-      const auto moved = watched(x_.get());
-      for (std::size_t d = 0; d < 2; ++d) out[2 * (2 * d + force) + part] = moved[d];
-    }
-  }
+  for (const Complex& g : response_.at(2 * std::numbers::pi * frequency).values)
+    out.insert(out.end(), {g.real(), g.imag()});
   return out;
 }
+
 }  // namespace whirl::study

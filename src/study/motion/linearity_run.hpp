@@ -9,8 +9,8 @@
 #include "study/bars/film_limit.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
+#include "study/linear/transfer_points.hpp"
 #include "study/motion/linearity.hpp"
-#include "whirl/solve/newton/frequency_resolvent.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/transient/analysis/estimators.hpp"
 #include "whirl/transient/steps/force.hpp"
@@ -61,7 +61,7 @@ private:
   core::Vector rest_, x_;
   std::array<std::vector<double>, 2> columns_;  // of unit forces on the coordinates
   FilmLimit films_;
-  solve::FrequencyResolvent response_;
+  TransferMatrix response_;
 };
 
 /// The noise of force d (0 x, 1 y) at a level.
