@@ -12,9 +12,11 @@
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/linear/linear_brief.hpp"
+#include "study/linear/mode_loss.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/deck/codecs.hpp"
 #include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/spectral/dense.hpp"
@@ -59,29 +61,16 @@ Conditions conditions(system::RotorSystem& system, Vec x) {
   core::Vector states = core::duplicate(x), rows = core::duplicate(x), rest = core::duplicate(x);
   system.scales(states.get(), rows.get());
   core::check(VecSet(rest.get(), 0));
-  const std::vector<double> scale = core::gather(states.get()), row_scale = core::gather(rows.get());
+  const std::vector<double> scale = core::gather(states.get());
   const auto modes = spectral::modes(system, x, options);
-  // Rows of momentum in coordinates, and in rates of velocities: each column from a product with the Jacobian.
+  core::check(VecReciprocal(rows.get()));
+  // Rows of momentum in coordinates, and in rates of velocities.
   const auto block = [&](double alpha, double sigma, PetscInt offset) {
     core::Matrix j = system.make_jacobian();
     system.jacobian(0, x, rest.get(), alpha, sigma, j.get());
-    Eigen::MatrixXd m(q, q);
-    core::Vector unit = core::duplicate(x), image = core::duplicate(x);
-    PetscInt begin = 0, end = 0;
-    core::check(VecGetOwnershipRange(unit.get(), &begin, &end));
-    for (PetscInt c = 0; c < q; ++c) {
-      core::check(VecSet(unit.get(), 0));
-      const PetscInt at = 2 * c + offset;
-      if (at >= begin && at < end)
-        core::check(VecSetValue(unit.get(), at, scale[static_cast<std::size_t>(at)], INSERT_VALUES));
-      core::check(VecAssemblyBegin(unit.get()));
-      core::check(VecAssemblyEnd(unit.get()));
-      core::check(MatMult(j.get(), unit.get(), image.get()));
-      const std::vector<double> whole = core::gather(image.get());
-      for (PetscInt r = 0; r < q; ++r)
-        m(r, c) = whole[static_cast<std::size_t>(2 * r)] / row_scale[static_cast<std::size_t>(2 * r)];
-    }
-    return m;
+    core::check(MatDiagonalScale(j.get(), rows.get(), states.get()));
+    const Eigen::MatrixXd all(whole_matrix(j.get()));
+    return Eigen::MatrixXd(all(Eigen::seqN(0, q, 2), Eigen::seqN(offset, q, 2)));
   };
   const Eigen::MatrixXd stiffness = block(1, 0, 0), mass = block(0, 1, 1);
   core::agree(system.comm(), [&] {
@@ -116,12 +105,6 @@ struct Found {
 double order(double coarse, double middle, double fine, double ratio) {
   const double p = std::log(std::abs((coarse - middle) / (middle - fine))) / std::log(ratio);
   return std::isfinite(p) ? p : io::no_value;
-}
-
-std::string name_of(rotor::BeamElement element) {
-  for (const auto& n : rotor::names(element))
-    if (n.value == element) return std::string(n.name);
-  return {};
 }
 
 // The largest finite one; not a number if there is none.
@@ -177,7 +160,7 @@ StudyResult ElementConvergence::run(Context& context) {
   group.set("speed", options.speed.value);
   for (std::size_t e = 0; e < all.size(); ++e) {
     const std::vector<Found>& of = all[e];
-    const std::string name = name_of(options.elements[e]);
+    const std::string name(deck::name_of(options.elements[e]));
     auto& table = group.child("convergence").child(name);
     table.set("place", static_cast<int>(e));
     std::vector<double> elements, frequency, forward, error, shift, columns[3];
@@ -255,9 +238,9 @@ io::Brief ElementConvergence::brief(const StudyResult& result, std::span<const i
     finest.rows[k].emplace_back(std::to_string(k + 1));
     orders.rows[k].emplace_back(std::to_string(k + 1));
   }
-  const std::string first = name_of(options.elements.front());
+  const std::string first(deck::name_of(options.elements.front()));
   for (const rotor::BeamElement element : options.elements) {
-    const std::string name = name_of(element);
+    const std::string name(deck::name_of(element));
     const io::Group& table = all.group(name);
     const std::vector<double>&n = table.reals("elements"), &error = table.reals("error");
     finest.columns.push_back({name, "Hz"});

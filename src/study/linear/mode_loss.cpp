@@ -10,6 +10,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/least_squares.hpp"
+#include "whirl/core/matrix_rows.hpp"
 #include "whirl/core/pivoted_lu.hpp"
 #include "whirl/spectral/dense.hpp"
 
@@ -19,27 +20,6 @@ namespace {
 using core::check;
 using Complex = std::complex<double>;
 using ComplexSparse = Eigen::SparseMatrix<Complex>;
-
-ComplexSparse whole(Mat distributed) {
-  core::Matrix all;
-  check(MatCreateRedundantMatrix(distributed,
-                                 core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(distributed))),
-                                 PETSC_COMM_SELF, MAT_INITIAL_MATRIX, all.put()));
-  PetscInt n = 0;
-  check(MatGetSize(all.get(), &n, nullptr));
-  std::vector<Eigen::Triplet<Complex>> entries;
-  for (PetscInt r = 0; r < n; ++r) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(all.get(), r, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k) entries.emplace_back(r, columns[k], values[k]);
-    check(MatRestoreRow(all.get(), r, &count, &columns, &values));
-  }
-  ComplexSparse out(n, n);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
 
 // In the scales of the system: dF/dx without loss, dF/d(dx/dt), and the rotor's K and K x [[0, 1], [-1, 0]] on its
 // displacements.
@@ -58,7 +38,7 @@ Pencil pencil_of(system::RotorSystem& system, Vec x) {
     const system::RotorSystem::WithLoss with(system, loss);
     system.jacobian(0, x, rest.get(), at_rest, rates, j.get());
     check(MatDiagonalScale(j.get(), rows.get(), states.get()));
-    return whole(j.get());
+    return ComplexSparse(whole_matrix(j.get()).cast<Complex>());
   };
   Pencil p;
   const std::vector<double> scale = core::gather(states.get());
@@ -146,6 +126,18 @@ void add_loss(const Pencil& p, const system::RotorSystem& system, double eta, st
 }
 
 }  // namespace
+
+Eigen::SparseMatrix<double> whole_matrix(Mat shared) {
+  PetscInt n = 0;
+  check(MatGetSize(shared, &n, nullptr));
+  std::vector<double> mine;
+  const PetscInt first = core::first_row(shared);
+  core::for_rows(shared, [&](PetscInt row, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
+    for (PetscInt k = 0; k < count; ++k)
+      mine.insert(mine.end(), {static_cast<double>(first + row), static_cast<double>(columns[k]), values[k]});
+  });
+  return core::gather_entries(PetscObjectComm(reinterpret_cast<PetscObject>(shared)), n, mine);
+}
 
 std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, std::vector<spectral::Mode> modes) {
   constexpr PetscInt most_states = 20000;

@@ -1,6 +1,7 @@
 #pragma once
 // What the loss factor of a rotor makes of the modes of a machine.
 
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "whirl/spectral/eigenvalues.hpp"
@@ -15,5 +16,8 @@ namespace whirl::study {
 /// core::NotConverged, core::InputError above 20,000 states.
 [[nodiscard]] std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x,
                                                     std::vector<spectral::Mode> modes);
+
+/// A square matrix that ranks share, whole on each of them. Collective.
+[[nodiscard]] Eigen::SparseMatrix<double> whole_matrix(Mat shared);
 
 }  // namespace whirl::study
