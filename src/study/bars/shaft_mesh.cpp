@@ -108,4 +108,8 @@ system::Train with_cut_shaft(system::Train train, int parts) {
   return train;
 }
 
+system::Train on_mesh(system::Train train, const FilmMesh& mesh) {
+  return with_cut_shaft(with_film_mesh(std::move(train), mesh.factor), parts_of(mesh));
+}
+
 }  // namespace whirl::study

@@ -65,5 +65,7 @@ void put_shaft_error(io::StudySummary& summary, const rotor::Options& rotor, dou
 
 /// The train with every beam of its shaft cut into `parts` equal ones; what stands at nodes stays in its place.
 [[nodiscard]] system::Train with_cut_shaft(system::Train train, int parts);
+/// The train on one of the meshes that bars stand on, of its films or of its shaft.
+[[nodiscard]] system::Train on_mesh(system::Train train, const FilmMesh& mesh);
 
 }  // namespace whirl::study

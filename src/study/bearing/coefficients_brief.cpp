@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "study/bearing/dynamic_coefficients.hpp"
+#include "study/bearing/film_at_rest.hpp"
 #include "study/brief.hpp"
+#include "study/evenly.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
@@ -109,14 +111,13 @@ io::BriefTable over_frequency(const io::Group& group, const std::vector<deck::Qu
   const io::Group& g = group.group("coefficients");
   const auto& ratio = g.reals("ratio");
   if (ratio.size() <= alone + 1) return out;
-  const std::size_t n = ratio.size() - alone, count = std::min(n, most);
   const std::pair<const char*, const char*> columns[] = {
       {"k_xx", "N/m"}, {"k_yy", "N/m"}, {"c_xx", "N s/m"}, {"c_yy", "N s/m"}};
   for (const auto& [name, unit] : columns)
     out.columns.push_back({fmt::format("{} {}", name[0] == 'k' ? 'K' : 'C', name + 2), unit});
   for (std::size_t s = 0; s < speeds.size(); ++s)
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t f = alone + (i * (n - 1)) / (count - 1), at = s * ratio.size() + f;
+    for (const std::size_t shown : few_of(ratio.size() - alone, most)) {
+      const std::size_t f = alone + shown, at = s * ratio.size() + f;
       if (std::isnan(g.reals("k_xx")[at])) continue;  // no equilibrium
       auto& row = out.rows.emplace_back();
       row = {io::reading({deck::from_si(speeds[s].value, speeds[s].unit), speeds[s].unit}),
@@ -142,12 +143,8 @@ io::BriefCell force_of(const io::Quantity& part, const io::Quantity& other) {
 
 io::Brief DynamicCoefficients::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
   const Values v(result.summary);
-  io::Brief brief;
-  if (v.get("capacity.load"))
-    brief.sentences.push_back(fmt::format("the film carries at most {}, at eccentricity {}",
-                                          io::reading(v["capacity.load"]), io::reading(v["capacity.eccentricity"])));
   const std::vector<CoefficientRow> places = coefficient_rows(v);
-  brief.sentences.push_back(of_coupling(v, places));
+  io::Brief brief{{capacity_words(v), of_coupling(v, places)}, {}};
   io::BriefTable journal{
       "Journal",
       {{"speed"}, {"x", "m"}, {"y", "m"}, {"|e|/c", "1"}, {"thinnest film", "m"}, {"force x", "N"}, {"force y", "N"}},

@@ -137,14 +137,10 @@ StudyResult DynamicCoefficients::run(Context& context) {
   const std::vector<std::string> speeds =
       column(options.speeds, [](const deck::Quantity& q) { return number_text(q.value, q.unit) + " " + q.unit; });
   const auto none = std::ranges::find_if(found, [](const AtSpeed& a) { return a.most.has_value(); });
-  if (none != found.end()) {
-    summary.set("capacity.load", none->most->load, "N");
-    summary.set("capacity.eccentricity", none->most->eccentricity, "1");
-  }
+  if (none != found.end()) put_capacity(summary, *none->most);
   if (std::ranges::none_of(found, &AtSpeed::found)) return context.results.finish(reasons.front(), false);
   put_summary(summary, options, clearance, found);
-  for (std::string& line : lost_points("no coefficients at", reasons, [&](std::size_t k) { return speeds[k]; }))
-    summary.warnings.push_back(std::move(line));
+  warn_of_lost_points(summary, "no coefficients at", reasons, [&](std::size_t k) { return speeds[k]; });
   for (std::size_t k = 0; k < found.size(); ++k)
     if (found[k].centre) summary.warnings.push_back(fmt::format("{}: {}", speeds[k], of_the_centre(found[k])));
   for (std::string& line : lost_motions(enforced_of(found), speeds, options.all_frequencies(), options.amplitudes))

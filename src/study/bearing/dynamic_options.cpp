@@ -5,6 +5,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bearing/dynamic_coefficients.hpp"
 #include "study/bearing/held_film.hpp"
+#include "study/evenly.hpp"
 #include "whirl/film/contract/options.hpp"
 #include "whirl/film/use/enforced.hpp"
 
@@ -49,8 +50,8 @@ void describe(deck::Description<DynamicCoefficientsOptions>& d) {
 std::vector<double> DynamicCoefficientsOptions::all_frequencies() const {
   std::vector<double> out = frequencies;
   if (!frequency_range) return out;
-  const auto [low, high] = *frequency_range;
-  for (int i = 0; i < points; ++i) out.push_back(low * std::pow(high / low, static_cast<double>(i) / (points - 1)));
+  const std::vector<double> more = by_ratios((*frequency_range)[0], (*frequency_range)[1], points);
+  out.insert(out.end(), more.begin(), more.end());
   return out;
 }
 

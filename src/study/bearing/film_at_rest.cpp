@@ -10,6 +10,7 @@
 
 #include "study/bars/summary_bars.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/io/brief.hpp"
 
 namespace whirl::study {
 
@@ -33,6 +34,17 @@ std::string in_words(const Capacity& most) {
   return fmt::format(
       "Where it pushes to no side the film carries at most {:.6g} N, at an eccentricity of {:.3g} clearances{}",
       most.load, most.eccentricity, most.rises ? ", and more closer to the wall" : "");
+}
+
+void put_capacity(io::StudySummary& summary, const Capacity& most) {
+  summary.set("capacity.load", most.load, "N");
+  summary.set("capacity.eccentricity", most.eccentricity, "1");
+}
+
+std::string capacity_words(const Values& v) {
+  if (!v.get("capacity.load")) return {};
+  return fmt::format("the film carries at most {}, at eccentricity {}", io::reading(v["capacity.load"]),
+                     io::reading(v["capacity.eccentricity"]));
 }
 
 std::optional<NoPlace> agreed_place(MPI_Comm comm, const std::function<void()>& compute) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "study/brief.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/contract/film.hpp"
 #include "whirl/system/train.hpp"
@@ -27,6 +28,9 @@ struct Capacity {
   void members(auto& archive) { archive(load, eccentricity, rises); }
 };
 [[nodiscard]] std::string in_words(const Capacity& most);
+void put_capacity(io::StudySummary& summary, const Capacity& most);
+/// What a brief says of it; empty where the film carries its load.
+[[nodiscard]] std::string capacity_words(const Values& v);
 
 /// No place of the journal was found where the film carries the load; the text tells what it carries at most.
 class NoPlace : public core::NotConverged {

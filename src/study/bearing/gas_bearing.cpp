@@ -13,6 +13,7 @@
 #include "study/bearing/held_film.hpp"
 #include "study/columns.hpp"
 #include "study/common.hpp"
+#include "study/evenly.hpp"
 #include "study/lost_points.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
@@ -93,9 +94,8 @@ void put_gas_summary(io::StudySummary& summary, const Rows& points, const std::s
     const std::string which = head.empty() ? fmt::format("speed.{:.6g}.eccentricity.{:.6g}.", p.speed, p.eccentricity)
                                            : fmt::format("{}.speed.{:.6g}.", head, p.speed);
     for (const char* name : told) {
-      const auto all = gas_quantities();
-      const auto q = std::ranges::find(all, std::string_view(name), &GasQuantity::name);
-      summary.set(which + name, p.values[static_cast<std::size_t>(q - all.begin())], q->unit);
+      const std::size_t k = gas_quantity(name);
+      summary.set(which + name, p.values[k], gas_quantities()[k].unit);
     }
     if (head.empty()) continue;
     summary.set(which + "x", p.place[0], "m");
@@ -210,10 +210,8 @@ void put_gas_map(io::Group& group, const GasMapOptions& map, const Rows& rows) {
   table.put("clearance", column(map.clearances, &deck::Quantity::value), "m", "of the bearing");
   table.put("diameter", column(map.diameters, &deck::Quantity::value), "m", "of all orifices");
   for (const char* name : {"load", "mass_flow", "power_loss"}) {
-    const auto all = gas_quantities();
-    const auto q = std::ranges::find(all, std::string_view(name), &GasQuantity::name);
-    const auto k = static_cast<std::size_t>(q - all.begin());
-    table.put(name, shape, column(rows, [k](const GasRow& r) { return r.values[k]; }), q->unit,
+    const std::size_t k = gas_quantity(name);
+    table.put(name, shape, column(rows, [k](const GasRow& r) { return r.values[k]; }), gas_quantities()[k].unit,
               "at the eccentricity of the map [clearance][diameter]");
   }
   put_reasons(table, shape, rows);
@@ -223,17 +221,14 @@ void put_gas_map(io::Group& group, const GasMapOptions& map, const Rows& rows) {
 
 // Thickness of a film at Knudsen numbers where slip begins to show, where it has to be counted, and of free molecules.
 void put_knudsen(io::Group& group, const film::Gas& gas, double viscosity) {
-  constexpr int points = 41;
-  constexpr double decades = 3, lowest = 0.1;  // times the pressure of the ends
-  std::vector<double> pressure;
-  for (int k = 0; k < points; ++k)
-    pressure.push_back(gas.ambient * lowest * std::pow(10.0, decades * k / (points - 1)));
+  constexpr double lowest = 0.1, highest = 100;  // times the pressure of the ends
+  const std::vector<double> pressure = by_ratios(lowest * gas.ambient, highest * gas.ambient, 41);
   auto& table = group.child("knudsen");
   table.put("pressure", pressure, "Pa", "of the gas, absolute");
   for (const auto& [name, number] : {std::pair{"slip_begins", 0.01}, {"transition", 0.1}, {"free_molecules", 10.0}}) {
-    std::vector<double> thickness;
-    for (const double p : pressure) thickness.push_back(mean_free_path(gas, viscosity, p) / number);
-    table.put(name, thickness, "m", fmt::format("thickness of a film with a Knudsen number of {}", number));
+    const auto thickness = [&](double p) { return mean_free_path(gas, viscosity, p) / number; };
+    table.put(name, column(pressure, thickness), "m",
+              fmt::format("thickness of a film with a Knudsen number of {}", number));
   }
 }
 
@@ -266,11 +261,8 @@ StudyResult GasBearing::run(Context& context) {
   put_gas_summary(summary, curves, "");
   put_gas_summary(summary, equilibria, "equilibrium");
   // The first speed at which the film does not carry the load.
-  const auto none = std::ranges::find_if(equilibria, [](const GasRow& r) { return std::isfinite(r.capacity); });
-  if (none != equilibria.end()) {
-    summary.set("capacity.load", none->capacity, "N");
-    summary.set("capacity.eccentricity", none->at_capacity, "1");
-  }
+  const auto none = std::ranges::find_if(equilibria, [](const GasRow& r) { return r.most.has_value(); });
+  if (none != equilibria.end()) put_capacity(summary, *none->most);
 
   SummaryBars bars(summary, law_of(context.machine, context.layout));
   std::vector<Answered<Capacity>> most(meshes.size());
@@ -285,10 +277,7 @@ StudyResult GasBearing::run(Context& context) {
     io::StudySummary there;
     put_gas_summary(there, job[elsewhere[k][0]], "");
     put_gas_summary(there, job[elsewhere[k][1]], "equilibrium");
-    if (most[k].found) {
-      there.set("capacity.load", most[k].found->load, "N");
-      there.set("capacity.eccentricity", most[k].found->eccentricity, "1");
-    }
+    if (most[k].found) put_capacity(there, *most[k].found);
     bars.add(meshes[k].axis, meshes[k].spacing, there);
   }
   constexpr double location = 1e-9;
@@ -313,8 +302,7 @@ StudyResult GasBearing::run(Context& context) {
   put_knudsen(group, *film::find<film::Gas>(support.film), support.lubricant.viscosity);
   summary.points = static_cast<long>(found(curves) + found(equilibria));
   const auto warn = [&](const Rows& rows, const std::function<std::string(std::size_t)>& words) {
-    for (std::string& line : lost_points("no film at", column(rows, &GasRow::reason), words))
-      summary.warnings.push_back(std::move(line));
+    warn_of_lost_points(summary, "no film at", column(rows, &GasRow::reason), words);
   };
   warn(curves, [&](std::size_t k) {
     return fmt::format("{:.6g} rad/s, eccentricity {:.6g}", curves[k].speed, curves[k].eccentricity);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "study/bearing/film_at_rest.hpp"
 #include "study/bearing/gas_bearing.hpp"
 #include "study/brief.hpp"
 #include "whirl/deck/units.hpp"
@@ -10,10 +11,7 @@ namespace whirl::study {
 
 io::Brief GasBearing::brief(const StudyResult& result, std::span<const io::StudySummary> /*before*/) const {
   const Values v(result.summary);
-  io::Brief brief;
-  if (v.get("capacity.load"))
-    brief.sentences.push_back(fmt::format("the film carries at most {}, at eccentricity {}",
-                                          io::reading(v["capacity.load"]), io::reading(v["capacity.eccentricity"])));
+  io::Brief brief{{capacity_words(v)}, {}};
   const std::string unit = options.speeds.front().unit;
   const std::vector<io::BriefColumn> numbers{{"load", "N"},         {"attitude", "rad"}, {"normal flow", "l/min"},
                                              {"mass flow", "kg/s"}, {"power loss", "W"}, {"Knudsen", "1"}};

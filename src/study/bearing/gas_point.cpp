@@ -81,6 +81,11 @@ std::span<const GasQuantity> gas_quantities() {
   return all;
 }
 
+std::size_t gas_quantity(std::string_view name) {
+  const auto all = gas_quantities();
+  return static_cast<std::size_t>(std::ranges::find(all, name, &GasQuantity::name) - all.begin());
+}
+
 GasRow gas_row(double speed, bool fields, const std::function<GasPoint()>& compute) {
   GasRow out;
   const WithoutFilm none = agreed_film(MPI_COMM_SELF, [&] {
@@ -94,10 +99,7 @@ GasRow gas_row(double speed, bool fields, const std::function<GasPoint()>& compu
     out = {};
     out.values.assign(gas_quantities().size(), io::no_value);
     out.reason = none.reason;
-    if (none.most) {
-      out.capacity = none.most->load;
-      out.at_capacity = none.most->eccentricity;
-    }
+    out.most = none.most;
   }
   out.speed = speed;
   return out;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "study/bearing/film_at_rest.hpp"
 #include "study/packed.hpp"
 #include "whirl/film/contract/film.hpp"
 #include "whirl/film/contract/gas.hpp"
@@ -39,17 +40,19 @@ struct GasQuantity {
   std::function<double(const GasPoint&)> of;
 };
 [[nodiscard]] std::span<const GasQuantity> gas_quantities();
+/// Its place among them.
+[[nodiscard]] std::size_t gas_quantity(std::string_view name);
 
 /// A film, or why there is none.
 struct GasRow {
-  double speed = 0, eccentricity = io::no_value;               ///< rad/s; in clearances
-  std::array<double, 2> place{io::no_value, io::no_value};     ///< m
-  std::vector<double> values;                                  ///< of gas_quantities(); not numbers without a film
-  std::vector<film::NodalField> fields;                        ///< if they were asked for
-  std::string reason;                                          ///< empty: there is a film
-  double capacity = io::no_value, at_capacity = io::no_value;  ///< N; eccentricity: the most that it carries
+  double speed = 0, eccentricity = io::no_value;            ///< rad/s; in clearances
+  std::array<double, 2> place{io::no_value, io::no_value};  ///< m
+  std::vector<double> values;                               ///< of gas_quantities(); not numbers without a film
+  std::vector<film::NodalField> fields;                     ///< if they were asked for
+  std::string reason;                                       ///< empty: there is a film
+  std::optional<Capacity> most;                             ///< of a film that carries less than its load
   [[nodiscard]] bool found() const { return reason.empty(); }
-  void members(auto& archive) { archive(speed, eccentricity, place, values, fields, reason, capacity, at_capacity); }
+  void members(auto& archive) { archive(speed, eccentricity, place, values, fields, reason, most); }
 };
 void members(auto& archive, film::NodalField& f) {
   archive(f.pad, f.name, f.unit, f.shape, f.values);

@@ -9,6 +9,7 @@
 
 #include "study/bars/shaft_mesh.hpp"
 #include "study/common.hpp"
+#include "study/evenly.hpp"
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "whirl/core/agree.hpp"
@@ -78,15 +79,6 @@ double bar_between(const std::vector<std::size_t>& known, const std::vector<std:
   return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b);
 }
 
-// Rows of the table that a person reads: both ends, and some between them, evenly spaced.
-std::vector<std::size_t> shown_of(std::size_t points) {
-  constexpr std::size_t most = 8;
-  std::vector<std::size_t> out;
-  const std::size_t n = std::min(most, points);
-  for (std::size_t k = 0; k < n; ++k) out.push_back(k * (points - 1) / (n - 1));
-  return out;
-}
-
 // "the lowest critical speed of forward whirl rises from 120.3 rpm at 1 kN/m to 4567 rpm at 10 GN/m", and how steeply
 // at both ends.
 std::string course(const std::vector<double>& stiffness, const std::vector<double>& speeds, std::size_t count,
@@ -121,14 +113,11 @@ StudyResult CriticalSpeedMap::run(Context& context) {
     return rotor::critical_speeds(of.rotor, springs.at, stiffness, whirl, options.count, springs.stands);
   };
   const bool barred = has_shaft_mesh(context.machine, context.layout);
-  const std::vector<std::size_t> few = few_of(points);
-  std::vector<double> stiffness, speeds[2], bars[2];
+  const std::vector<std::size_t> few = few_of(points, most_with_bars);
+  const std::vector<double> stiffness = by_ratios(options.stiffness.from, options.stiffness.to, options.points);
+  std::vector<double> speeds[2], bars[2];
   double largest = 0;
   core::agree(context.comm, [&] {
-    for (std::size_t i = 0; i < points; ++i) {
-      const double part = static_cast<double>(i) / static_cast<double>(points - 1);
-      stiffness.push_back(options.stiffness.from * std::pow(options.stiffness.to / options.stiffness.from, part));
-    }
     for (std::size_t w = 0; w < 2; ++w) {
       std::vector<std::vector<double>> known;  // bars at few of them
       for (std::size_t i = 0; i < points; ++i) {
@@ -173,6 +162,7 @@ io::Brief CriticalSpeedMap::brief(const StudyResult& result, std::span<const io:
   const io::Group& map = result.group.group("map");
   const std::vector<double>& stiffness = map.reals("stiffness");
   const auto count = static_cast<std::size_t>(options.count);
+  constexpr std::size_t most_shown = 8;
   io::Brief out;
   for (const char* whirl : whirl_names) {
     const std::vector<double>& speeds = map.reals(whirl);
@@ -182,7 +172,7 @@ io::Brief CriticalSpeedMap::brief(const StudyResult& result, std::span<const io:
                          {},
                          "equal springs in x and y at all supports, on their pedestals; no damping, no films"};
     for (std::size_t k = 0; k < count; ++k) table.columns.push_back({fmt::format("no. {}", k + 1), "rpm"});
-    for (const std::size_t i : shown_of(stiffness.size())) {
+    for (const std::size_t i : few_of(stiffness.size(), most_shown)) {
       auto& row = table.rows.emplace_back();
       row.emplace_back(to_digits({stiffness[i], "N/m"}, 4));
       for (std::size_t k = 0; k < count; ++k) {

@@ -16,6 +16,7 @@
 #include "study/branch_state.hpp"
 #include "study/columns.hpp"
 #include "study/common.hpp"
+#include "study/evenly.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/linear/mode_bars.hpp"
@@ -64,8 +65,7 @@ public:
             std::vector<TransferOutput> outputs, const FilmMesh& mesh = {})
       : options_(moved(options, context.machine.rotor, parts_of(mesh))),
         outputs_(moved(std::move(outputs), context.machine.rotor, parts_of(mesh))),
-        train_(with_cut_shaft(with_film_mesh(with_joints(system::train_of(context.machine), options), mesh.factor),
-                              parts_of(mesh))),
+        train_(on_mesh(with_joints(system::train_of(context.machine), options), mesh)),
         system_(layout.space, train_, options.speed.value),
         walker_(system_),
         matrix_(system_, options_.inputs, outputs_) {}
@@ -182,7 +182,7 @@ TransferBars bars_of(const Context& context, const Layout& layout, Pieces& piece
   if (shaft_mesh_matters(context.machine, context.layout)) meshes.push_back(cut_shaft_mesh);
   if (meshes.empty()) return out;
   const std::size_t responses = found.front().size();
-  const std::vector<std::size_t> few = few_of(frequencies.size());
+  const std::vector<std::size_t> few = few_of(frequencies.size(), most_with_bars);
   std::set<std::size_t> at(few.begin(), few.end());
   for (std::size_t e = 0; e < responses; ++e)
     if (std::ranges::none_of(endless, [&](const Endless& u) { return u.responses[e]; }))
@@ -230,13 +230,9 @@ StudyResult FrequencyResponse::run(Context& context) {
   const std::string unit = options.range.unit;
   const auto in_unit = [&](double omega) { return deck::from_si(omega, unit, deck::frequency); };
   const auto shown = [&](double omega) { return fmt::format("{:.6g} {}", in_unit(omega), unit); };
-  std::vector<double> frequencies;
-  for (int k = 0; k < options.points; ++k) {
-    const double part = static_cast<double>(k) / (options.points - 1);
-    frequencies.push_back(options.spacing == FrequencyResponseOptions::Spacing::log
-                              ? options.range.from * std::pow(options.range.to / options.range.from, part)
-                              : options.range.from + (options.range.to - options.range.from) * part);
-  }
+  const bool by_log = options.spacing == FrequencyResponseOptions::Spacing::log;
+  const std::vector<double> frequencies =
+      (by_log ? by_ratios : evenly)(options.range.from, options.range.to, options.points);
   std::vector<Way> ways{{"machine"}};
   if (options.coefficients) ways.push_back({"coefficients", Way::Films::at_each});
   for (const deck::Quantity& q : options.constant_at)
@@ -305,8 +301,7 @@ StudyResult FrequencyResponse::run(Context& context) {
     auto& table = response.child(ways[w].name);
     table.set("frequency", ways[w].frequency);
     const std::string head = w == 0 ? "no answer at" : fmt::format("no answer of '{}' at", ways[w].name);
-    for (std::string& line : lost_points(head, lost[w], [&](std::size_t k) { return shown(frequencies[k]); }))
-      summary.warnings.push_back(std::move(line));
+    warn_of_lost_points(summary, head, lost[w], [&](std::size_t k) { return shown(frequencies[k]); });
   }
   const std::size_t inputs = options.inputs.size();
   const auto answers = [&](std::size_t at, std::size_t e) { return std::abs(all[0][at][e]) > rounding[at][e]; };

@@ -20,8 +20,6 @@ namespace whirl::study {
 
 namespace {
 
-constexpr std::size_t most_speeds = 5;
-
 void append(std::vector<double>& out, std::complex<double> lambda) {
   out.insert(out.end(), {lambda.real(), lambda.imag(), spectral::log_decrement(lambda)});
 }
@@ -67,36 +65,27 @@ std::string runs_of(const std::set<int>& numbers) {
 
 }  // namespace
 
-std::vector<std::size_t> few_of(std::size_t n) {
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < std::min(n, most_speeds); ++k)
-    out.push_back(n <= most_speeds ? k : k * (n - 1) / (most_speeds - 1));
-  return out;
-}
-
 // One task is one mesh at all these speeds, each from its neighbour.
 ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
                    const std::vector<SampledModes>& sampled,
                    const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at)
     : resolved_to_(resolved_to(context.machine.rotor)) {
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   const bool shaft = has_shaft_mesh(context.machine, context.layout);
-  any_ = !meshes.empty() || shaft;
+  if (shaft) meshes.push_back(cut_shaft_mesh);
+  any_ = !meshes.empty();
   several_ = sampled.size() > 1;
   if (!any_ || sampled.empty()) return;
-  // The last one is that of the shaft. Its nodes that were there before are those of the modes here.
+  // Nodes of a shaft that is cut which were there before are those of the modes here.
   const auto compute = [&](std::size_t i) {
-    const bool of_shaft = i == meshes.size();
     return answered([&] {
       std::vector<double> all;
       const system::Train given = system::train_of(context.machine);
-      system::RotorSystem there(layout.space,
-                                of_shaft ? with_cut_shaft(given, 2) : with_film_mesh(given, meshes[i].factor),
-                                sampled.front().speed);
+      system::RotorSystem there(layout.space, on_mesh(given, meshes[i]), sampled.front().speed);
       Walker walker(there);
       for (const SampledModes& s : sampled) {
         auto other = modes_at(there, walker.at(s.speed));
-        if (of_shaft)
+        if (meshes[i].axis == Axis::shaft)
           for (spectral::ModePoint& m : other) m.shape = at_nodes_of(given.rotor, m.shape);
         const auto numbers = paired(s.modes, other);
         all.insert(all.end(), numbers.begin(), numbers.end());
@@ -104,10 +93,15 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
       return all;
     });
   };
-  const auto on_meshes = distribute(layout, meshes.size() + (shaft ? 1 : 0), compute, pieces, "other mesh", no_trail);
-  for (std::size_t i = 0; i < on_meshes.size(); ++i) {
+  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "other mesh", no_trail);
+  std::vector<double> here;
+  for (const SampledModes& s : sampled)
+    for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);
+  Bars bars(here, law_of(context.machine, context.layout));
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
     const auto& [found, failed] = on_meshes[i];
-    const bool of_shaft = i == meshes.size();
+    bars.add(meshes[i].axis, meshes[i].spacing, found.value_or(std::vector<double>{}));
+    const bool of_shaft = meshes[i].axis == Axis::shaft;
     const char* const mesh = of_shaft ? "the shaft with every segment cut in two" : "another mesh of the films";
     const char* const advice = of_shaft ? "cut the segments shorter" : "give the films more cells";
     for (std::size_t s = 0, k = 0; s < sampled.size(); ++s)
@@ -118,13 +112,6 @@ ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
             .insert(sampled[s].ids[m]);
       }
   }
-  std::vector<double> here;
-  for (const SampledModes& s : sampled)
-    for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);
-  Bars bars(here, law_of(context.machine, context.layout));
-  for (std::size_t i = 0; i < meshes.size(); ++i)
-    bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i].found.value_or(std::vector<double>{}));
-  if (shaft) bars.add(Axis::shaft, 0.5, on_meshes.back().found.value_or(std::vector<double>{}));
   std::size_t k = 0;
   for (const SampledModes& s : sampled)
     for (std::size_t m = 0; m < s.ids.size(); ++m) {

@@ -29,8 +29,8 @@ struct SampledModes {
   std::size_t listed = 0;  ///< the first of them, which results show
 };
 
-/// At most five of n, first and last among them: the speeds at which modes are computed on other meshes.
-[[nodiscard]] std::vector<std::size_t> few_of(std::size_t n);
+/// At so many speeds at most modes are computed on other meshes.
+inline constexpr std::size_t most_with_bars = 5;
 
 class ModeBars {
 public:

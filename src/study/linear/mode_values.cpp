@@ -14,6 +14,7 @@
 #include "study/common.hpp"
 #include "study/growth.hpp"
 #include "study/linear/linear_brief.hpp"
+#include "study/lost_points.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -21,13 +22,6 @@ namespace whirl::study {
 namespace {
 
 constexpr std::size_t most_named = 5;  // in one warning
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (std::size_t k = 0; k < std::min(most_named, words.size()); ++k) out += (k > 0 ? "; " : "") + words[k];
-  if (words.size() > most_named) out += fmt::format("; and {} more", words.size() - most_named);
-  return out;
-}
 
 }  // namespace
 
@@ -65,10 +59,10 @@ void ModeValues::put_speeds(io::StudySummary& summary, const std::vector<Station
     last = std::move(growing);
   }
   if (speeds.size() == 1)
-    warn_first(summary, fmt::format("at {} {} the machine is unstable: {}", speeds[0], unit_, joined(last)));
+    warn_first(summary, fmt::format("at {} {} the machine is unstable: {}", speeds[0], unit_, first_words(last)));
   if (speeds.size() > 1)
     warn_first(summary, fmt::format("at {} the machine is unstable; at {} {}: {}", in_words(speeds, most_named, unit_),
-                                    speeds.back(), unit_, joined(last)));
+                                    speeds.back(), unit_, first_words(last)));
 }
 
 std::vector<std::string> ModeValues::put_speed(io::StudySummary& summary, const Station& station) const {
@@ -222,7 +216,7 @@ void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const s
             "1: it becomes unstable at `from`; 0: the mode or the range of speeds begins there");
   table.put("ends", column(ranges, &R::ends),
             "1: it becomes stable at `to`; 0: the mode or the range of speeds ends there");
-  if (!ranges.empty()) warn_first(summary, "the machine is unstable: " + joined(words));
+  if (!ranges.empty()) warn_first(summary, "the machine is unstable: " + first_words(words));
 }
 
 void ModeValues::put_overdamped(io::Group& table, io::StudySummary& summary,

@@ -14,6 +14,7 @@
 #include "study/bars/verdict.hpp"
 #include "study/columns.hpp"
 #include "study/common.hpp"
+#include "study/evenly.hpp"
 #include "study/layout.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_stations.hpp"
@@ -144,7 +145,7 @@ StudyResult Modes::run(Context& context) {
   };
 
   std::vector<SampledModes> sampled;
-  for (const std::size_t i : few_of(stations.size())) {
+  for (const std::size_t i : few_of(stations.size(), most_with_bars)) {
     sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes), stations[i].listed});
     for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
   }

@@ -6,6 +6,7 @@
 
 #include "study/columns.hpp"
 #include "study/cost.hpp"
+#include "study/evenly.hpp"
 
 namespace whirl::study {
 
@@ -86,10 +87,7 @@ void describe(deck::Description<ModesOptions>& d) {
 }
 
 std::vector<double> ModesOptions::all_speeds() const {
-  std::vector<double> s = column(speeds, &deck::Quantity::value);
-  if (range)
-    for (int i = 0; i < points; ++i) s.push_back(range->from + (range->to - range->from) * i / (points - 1));
-  return s;
+  return range ? evenly(range->from, range->to, points) : column(speeds, &deck::Quantity::value);
 }
 
 std::vector<double> ModesOptions::all_shape_speeds() const {

@@ -108,8 +108,7 @@ void put_lost(std::vector<ResponseAtSpeed>& curve, const LostSpeeds& lost, io::S
     words.push_back(fmt::format("{:.6g} {}", deck::from_si(speed, unit), unit));
     reasons.push_back(why);
   }
-  for (std::string& line : lost_points("no response at", reasons, [&](std::size_t k) { return words[k]; }))
-    summary.warnings.push_back(std::move(line));
+  warn_of_lost_points(summary, "no response at", reasons, [&](std::size_t k) { return words[k]; });
 }
 
 }  // namespace whirl::study

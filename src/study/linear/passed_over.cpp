@@ -10,6 +10,7 @@
 
 #include "study/brief.hpp"
 #include "study/growth.hpp"
+#include "study/lost_points.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/rounded.hpp"
 #include "whirl/solve/newton/frequency_resolvent.hpp"
@@ -29,7 +30,6 @@ void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>
                          const std::vector<std::vector<std::complex<double>>>& found,
                          const std::vector<ResponseName>& names, const std::string& unit) {
   constexpr double as_large = 1.1;  // less than a tenth more is no news beside the answers computed
-  constexpr std::size_t shown = 5;
   std::vector<std::string> all;
   for (std::size_t k = 0; k < resonances.size(); ++k) {
     const Transfer& there = at_resonances[k];
@@ -55,12 +55,10 @@ void warn_of_passed_over(io::StudySummary& summary, const std::vector<Resonance>
     if (!words.empty()) all.push_back(words);
   }
   if (all.empty()) return;
-  const std::size_t n = std::min(shown, all.size());
   summary.warnings.push_back(fmt::format(
-      "the frequencies step over narrow resonances: {}{}. The largest responses are those at the frequencies computed: "
+      "the frequencies step over narrow resonances: {}. The largest responses are those at the frequencies computed: "
       "more points, or a range about a resonance, show its peak",
-      fmt::join(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), ", "),
-      all.size() > n ? fmt::format(", and {} more", all.size() - n) : ""));
+      first_words(all, ", ")));
 }
 
 std::array<double, 2> beside_pole(const Resonance& resonance) {
@@ -132,7 +130,6 @@ bool put_endless(io::StudySummary& summary, const ResponseName& name, std::size_
 
 void warn_of_endless(io::StudySummary& summary, const std::vector<Endless>& endless, const std::vector<double>& bars,
                      const std::vector<ResponseName>& names, const std::string& unit) {
-  constexpr std::size_t shown = 5;
   std::vector<std::string> all;
   for (std::size_t k = 0; k < endless.size(); ++k) {
     std::vector<std::string> of;
@@ -145,12 +142,10 @@ void warn_of_endless(io::StudySummary& summary, const std::vector<Endless>& endl
                               of.front(), of.size() > 1 ? fmt::format(" and {} more", of.size() - 1) : ""));
   }
   if (all.empty()) return;
-  const std::size_t n = std::min(shown, all.size());
   summary.warnings.push_back(fmt::format(
-      "undamped resonances: {}{}. The answers grow without limit as the frequency comes nearer, and have no largest "
+      "undamped resonances: {}. The answers grow without limit as the frequency comes nearer, and have no largest "
       "value; what is computed beside them hangs on the distance alone",
-      fmt::join(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(n), ", "),
-      all.size() > n ? fmt::format(", and {} more", all.size() - n) : ""));
+      first_words(all, ", ")));
 }
 
 }  // namespace whirl::study

@@ -43,10 +43,7 @@ double film_left(const system::Support& s, const system::JournalState& at, const
 
 Responder::Responder(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options,
                      std::vector<int> nodes, const FilmMesh& mesh)
-    : system_(layout.space,
-              with_cut_shaft(with_film_mesh(system::train_of(context.machine, options.unbalance), mesh.factor),
-                             parts_of(mesh)),
-              options.range.from),
+    : system_(layout.space, on_mesh(system::train_of(context.machine, options.unbalance), mesh), options.range.from),
       walker_(system_),
       solver_(system_),
       nodes_(std::move(nodes)) {

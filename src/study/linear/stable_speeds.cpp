@@ -10,21 +10,16 @@
 #include <set>
 #include <utility>
 
+#include "study/columns.hpp"
+#include "study/evenly.hpp"
 #include "study/growth.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {
-namespace {
-
-constexpr std::size_t few = 13;
-
-}  // namespace
 
 std::vector<double> few_speeds(const std::vector<double>& speeds) {
-  const std::size_t n = speeds.size();
-  std::vector<double> out;
-  for (std::size_t k = 0; k < std::min(few, n); ++k) out.push_back(speeds[n <= few ? k : k * (n - 1) / (few - 1)]);
-  return out;
+  constexpr std::size_t most = 13;
+  return column(few_of(speeds.size(), most), [&](std::size_t k) { return speeds[k]; });
 }
 
 StableSpeeds::StableSpeeds(std::vector<double> speeds, const std::vector<double>& first, const Count& count)

@@ -14,7 +14,9 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
+#include "study/evenly.hpp"
 #include "study/layout.hpp"
 #include "study/linear/open_ends.hpp"
 #include "study/linear/peak_list.hpp"
@@ -34,9 +36,7 @@ namespace whirl::study {
 namespace {
 
 std::vector<double> speeds_of(const std::vector<ResponseAtSpeed>& curve) {
-  std::vector<double> speeds;
-  for (const ResponseAtSpeed& r : curve) speeds.push_back(r.speed);
-  return speeds;
+  return column(curve, &ResponseAtSpeed::speed);
 }
 
 const ResponseAtSpeed& nearest(const std::vector<ResponseAtSpeed>& curve, double speed) {
@@ -55,10 +55,8 @@ void put_stability(io::Group& group, io::StudySummary& summary, const std::vecto
                    const StableSpeeds& stable, const std::optional<deck::Quantity>& operating,
                    const std::string& unit) {
   if (!stable.known()) return;
-  std::vector<std::int64_t> numbers;
-  for (const ResponseAtSpeed& r : curve) numbers.push_back(stable.at(r.speed));
   group.child("response")
-      .put("unstable_count", numbers,
+      .put("unstable_count", column(curve, [&](const ResponseAtSpeed& r) { return stable.at(r.speed); }),
            "eigenvalues that grow about the equilibrium, between the speeds counted as beside them; -1: some may be "
            "missing");
   put_verdict(summary, stable, unit,
@@ -118,9 +116,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
         rows.push_back(ResponseAtSpeed::without_answer(speed, nodes.size(), names.size()));
     return rows;
   };
-  std::vector<double> grid;
-  for (int k = 0; k < options.points; ++k)
-    grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
+  const std::vector<double> grid = evenly(options.range.from, options.range.to, options.points);
   std::vector<ResponseAtSpeed> curve = rows_at(grid);
   if (std::ranges::all_of(curve, [](const ResponseAtSpeed& r) { return std::isnan(r.largest); }))
     return results.finish(lost.begin()->second, false);

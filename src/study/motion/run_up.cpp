@@ -13,6 +13,7 @@
 #include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
+#include "study/evenly.hpp"
 #include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/linear/stable_speeds.hpp"
@@ -146,10 +147,7 @@ private:
   void count_growth() {
     const double from = options_.range.from, to = options_.range.to, low = std::min(from, to),
                  high = std::max(from, to);
-    constexpr int parts = 12;
-    std::vector<double> first{low, high}, all{low};
-    for (int k = 1; k < parts; ++k) all.push_back(low + (high - low) * k / parts);
-    all.push_back(high);
+    std::vector<double> first{low, high}, all = evenly(low, high, 13);
     const auto& service = context_.machine.service_speed;
     if (service && low < service->value && service->value < high) {
       put_between(all, service->value);

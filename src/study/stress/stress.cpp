@@ -29,7 +29,7 @@ namespace {
 system::Train train_on(const system::Machine& machine, const StressOptions& o, const FilmMesh& mesh) {
   system::Train train = system::train_of(machine, o.unbalance);
   train.rotor.reduction = {};
-  return with_cut_shaft(with_film_mesh(std::move(train), mesh.factor), parts_of(mesh));
+  return on_mesh(std::move(train), mesh);
 }
 
 // The machine at its speed. Collective.
