@@ -11,7 +11,7 @@
 namespace whirl::study {
 namespace {
 
-constexpr std::array<std::string_view, 4> directions{"x", "y", "vx", "vy"};
+constexpr std::array<std::string_view, 4> coordinate_words{"x", "y", "vx", "vy"};
 
 }  // namespace
 
@@ -27,8 +27,8 @@ StateAt state_at(std::string_view name, const std::vector<std::string>& places, 
   }
   std::vector<std::string> all;
   for (std::size_t p = 0; p < places.size(); ++p)
-    for (std::size_t d = 0; d < directions.size(); ++d) {
-      all.push_back(fmt::format("{}.{}", places[p], directions[d]));
+    for (std::size_t d = 0; d < coordinate_words.size(); ++d) {
+      all.push_back(fmt::format("{}.{}", places[p], coordinate_words[d]));
       if (all.back() == name) return {static_cast<int>(p), static_cast<int>(d)};
     }
   throw core::InputError(fmt::format("there is no coordinate '{}'{}", name, deck::did_you_mean_one_of(name, all)));
@@ -61,7 +61,7 @@ std::string SectionPlane::text(const system::ShownPlaces& places) const {
       sum += fmt::format("state.{}", t.of.which + 1);
     } else {
       sum += fmt::format("{}.{}", places.names[static_cast<std::size_t>(t.of.place)],
-                         directions[static_cast<std::size_t>(t.of.which)]);
+                         coordinate_words[static_cast<std::size_t>(t.of.which)]);
       unit = t.of.which < 2 ? places.unit : places.rate_unit;
     }
   }
