@@ -87,7 +87,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   std::size_t ready = 0, calls = 0;
   Pieces pieces(results, context.resume);
   LostSpeeds lost;
-  const auto solve_at = [&](Responder& which, const std::vector<double>& speeds, const std::string& piece) {
+  const auto solve_at = [&](Responder& which, const std::vector<double>& speeds, const std::string& piece,
+                            LostSpeeds& without) {
     const auto compute = [&](std::size_t i) {
       auto here = answered([&] { return which.at(speeds[i]); });
       results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
@@ -100,13 +101,13 @@ StudyResult UnbalanceResponse::run(Context& context) {
       if (there)
         out.push_back(std::move(*there));
       else
-        lost[speeds[k]] = std::move(why);
+        without[speeds[k]] = std::move(why);
       ++k;
     }
     return out;
   };
   const auto at_speeds = [&](const std::vector<double>& speeds) {
-    return solve_at(machine, speeds, fmt::format("{} speed", ++calls));
+    return solve_at(machine, speeds, fmt::format("{} speed", ++calls), lost);
   };
   // The same for the curve: a speed without an equilibrium is a gap of it.
   const auto rows_at = [&](const std::vector<double>& speeds) {
@@ -327,8 +328,9 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       std::optional<Responder> other;
                       if (mesh.spacing != 1) other.emplace(context, layout, options, nodes, mesh);
                       if (operating_known) at.push_back(operating_speed->value);
-                      std::vector<ResponseAtSpeed> all = solve_at(other ? *other : machine, at, piece);
-                      if (all.size() < at.size()) throw core::NotConverged(lost.begin()->second);
+                      LostSpeeds without;
+                      std::vector<ResponseAtSpeed> all = solve_at(other ? *other : machine, at, piece, without);
+                      if (!without.empty()) throw core::NotConverged(without.begin()->second);
                       MeshResponse out;
                       if (operating_known) {
                         put_operating(names, nodes, all.back(), out.operating);
