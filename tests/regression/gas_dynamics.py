@@ -188,6 +188,12 @@ def capacity(h):
     for k in "gds":
         h.true(f"{s[k]['kind'] if 'kind' in s[k] else k}: no equilibrium, with the capacity", "no equilibrium" in s[k]["status"] and f"at most {most:.6g} N" in s[k]["status"], s[k]["status"])
     h.close("    the same", value(s["d"], "capacity.load"), most, 1e-9 * most)
+    # A fast shaft carries its load: the capacity of the slow one has the bar that gas_bearing gives it.
+    both = [*weak[:2], "studies=[{gas_bearing: {name: g, speeds: [1 rad/s], eccentricities: [0.5], load: 35 N}}, "
+            "{dynamic_coefficients: {name: d, load: 35 N, speeds: [1 rad/s, 8000 rad/s]}}]"]
+    s = h.run(deck, "one of two", both, launcher=[], code=3)
+    bar = [s[k]["values"]["capacity.load"].get("uncertainty") for k in "gd"]
+    h.true("    with the same bar", None not in bar and abs(bar[0] - bar[1]) <= 1e-9 * bar[0], str(bar))
 
 
 def refused(h):

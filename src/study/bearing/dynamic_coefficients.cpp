@@ -156,6 +156,8 @@ StudyResult DynamicCoefficients::run(Context& context) {
     const std::vector<AtSpeed> other = on_meshes[m + 1].found.value_or(std::vector<AtSpeed>());
     io::StudySummary there;
     put_summary(there, options, clearance, other);
+    const auto at_most = static_cast<std::size_t>(none - found.begin());
+    if (at_most < other.size() && other[at_most].most) put_capacity(there, *other[at_most].most);
     of_summary.add(meshes[m].axis, meshes[m].spacing, there);
     io::Group tables;
     if (!other.empty()) put_tables(tables, options, clearance, other);
