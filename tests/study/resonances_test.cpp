@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "study/linear/response_places.hpp"
+#include "study/linear/response_record.hpp"
 
 namespace whirl::study {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/held_film.hpp"
-#include "study/bearing/thd_values.hpp"
+#include "study/bearing/thd_results.hpp"
 #include "study/findings.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/study/layout_options.hpp"

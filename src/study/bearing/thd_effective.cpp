@@ -1,4 +1,4 @@
-#include "study/bearing/thd_effective.hpp"
+#include "study/bearing/thd_results.hpp"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "study/bars/summary_bars.hpp"
-#include "study/bearing/thd_record.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/thermal/lumped.hpp"
 

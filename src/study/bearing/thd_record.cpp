@@ -1,4 +1,4 @@
-#include "study/bearing/thd_record.hpp"
+#include "study/bearing/thd_results.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,10 +7,8 @@
 #include <functional>
 #include <string_view>
 
-#include "study/bearing/thd_effective.hpp"
 #include "study/bearing/thd_load.hpp"
-#include "study/bearing/thd_record.hpp"
-#include "study/bearing/thd_values.hpp"
+#include "study/bearing/thd_results.hpp"
 #include "study/columns.hpp"
 #include "study/findings.hpp"
 #include "study/pieces.hpp"

@@ -1,4 +1,4 @@
-#include "study/bearing/thd_values.hpp"
+#include "study/bearing/thd_results.hpp"
 
 #include <fmt/core.h>
 
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "study/bearing/thd_record.hpp"
 #include "study/findings.hpp"
 
 namespace whirl::study {

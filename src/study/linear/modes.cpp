@@ -22,7 +22,6 @@
 #include "study/linear/mode_values.hpp"
 #include "study/linear/peak_list.hpp"
 #include "study/linear/separation.hpp"
-#include "study/linear/shaft_alone.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "study/service_speeds.hpp"

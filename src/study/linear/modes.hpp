@@ -50,4 +50,10 @@ private:
   void validate_line(const system::Machine& machine, const deck::Report& report) const;
 };
 
+/// Whether these modes are of the shaft alone.
+[[nodiscard]] bool of_shaft_alone(const ModesOptions& options);
+
+/// The frequencies with their bars, and the shapes of torsion and axial motion. Collective.
+[[nodiscard]] StudyResult modes_of_shaft_alone(Context& context, const ModesOptions& options);
+
 }  // namespace whirl::study

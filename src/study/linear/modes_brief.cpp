@@ -11,7 +11,6 @@
 #include "study/linear/linear_brief.hpp"
 #include "study/linear/modes.hpp"
 #include "study/linear/separation.hpp"
-#include "study/linear/shaft_alone.hpp"
 #include "whirl/deck/units.hpp"
 
 namespace whirl::study {

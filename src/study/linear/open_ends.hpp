@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "study/linear/resonances.hpp"
-#include "study/linear/response_places.hpp"
 #include "study/linear/response_record.hpp"
 #include "whirl/io/summary.hpp"
 

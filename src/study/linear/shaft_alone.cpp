@@ -1,4 +1,4 @@
-#include "study/linear/shaft_alone.hpp"
+#include "study/linear/modes.hpp"
 
 #include <fmt/core.h>
 

@@ -23,7 +23,6 @@
 #include "study/linear/resonances.hpp"
 #include "study/linear/responder.hpp"
 #include "study/linear/response_bars.hpp"
-#include "study/linear/response_places.hpp"
 #include "study/linear/response_record.hpp"
 #include "study/linear/stable_speeds.hpp"
 #include "study/lost_points.hpp"

@@ -4,7 +4,7 @@
 
 #include "study/make_plant.hpp"
 #include "study/motion/assessment.hpp"
-#include "study/motion/plane.hpp"
+#include "study/motion/section.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/system/options.hpp"
 

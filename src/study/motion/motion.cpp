@@ -18,7 +18,7 @@
 #include "study/make_plant.hpp"
 #include "study/motion/motion_record.hpp"
 #include "study/motion/motion_start.hpp"
-#include "study/motion/plane.hpp"
+#include "study/motion/section.hpp"
 #include "study/packed.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"

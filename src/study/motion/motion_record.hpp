@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "study/motion/motion.hpp"
-#include "study/motion/section_record.hpp"
+#include "study/motion/section.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/system/plant.hpp"
