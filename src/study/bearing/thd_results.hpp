@@ -2,7 +2,6 @@
 // What a film with heat leaves in the results: named values with their bars, rows over the speed, fields and pictures,
 // and films of one temperature beside it.
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -12,16 +11,14 @@
 #include "study/pieces.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
+#include "whirl/io/table.hpp"
 
 namespace whirl::study {
 
-/// A column of the table over the speed.
-struct ThdColumn {
-  const char *name, *unit, *description;
-};
-[[nodiscard]] std::span<const ThdColumn> thd_columns();
-/// One number for each column, of a film that is solved. Collective.
-[[nodiscard]] std::vector<double> thd_row(ThdAtSpeed& film, double speed);
+/// The table over the speed, without rows.
+[[nodiscard]] io::Table thd_table();
+/// Appends the row of a film that is solved. Collective.
+void append_thd(io::Table& table, ThdAtSpeed& film, double speed);
 
 /// All named values of a film that is solved, but for what rounding and iterations leave. Collective.
 void put_thd_values(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& options);

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <string_view>
 
 #include "study/bearing/thd_load.hpp"
 #include "study/bearing/thd_results.hpp"
-#include "study/columns.hpp"
 #include "study/findings.hpp"
 #include "study/pieces.hpp"
 #include "study/sense.hpp"
@@ -22,24 +20,20 @@ namespace {
 // What a sweep has done: rows of its table, the reasons of those without a film (empty: there is one), and the last
 // state to go on from, in rows shared by the ranks.
 struct SpeedSweep {
-  std::vector<std::vector<double>> rows;
+  io::Table table = thd_table();
   std::vector<std::string> reasons;
   std::vector<std::string> unsettled;
 
-  [[nodiscard]] bool any() const {
-    return std::ranges::any_of(reasons, [](const std::string& why) { return why.empty(); });
-  }
+  [[nodiscard]] bool any() const { return std::ranges::find(reasons, "") != reasons.end(); }
   void lose(double speed, const std::string& reason) {
-    rows.emplace_back(thd_columns().size(), io::no_value);
-    rows.back().front() = speed;
+    std::vector<std::vector<double>> row(table.columns().size(), {io::no_value});
+    row.front() = {speed};
+    table.append(row);
     reasons.push_back(reason);
   }
-
   [[nodiscard]] io::Group kept(const ThdAtSpeed& film, std::vector<double> state) const {
     io::Group out;
-    std::vector<double> flat;
-    for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
-    out.put("rows", io::Shape{rows.size(), thd_columns().size()}, std::move(flat), "1", "of the table over the speed");
+    table.write(out.child("table"));
     out.put("reasons", reasons, "why there is no film at a speed");
     out.put("unsettled", unsettled, "speeds at which the temperatures did not settle");
     const thermal::Rows& r = film.rows();
@@ -50,30 +44,19 @@ struct SpeedSweep {
     out.put("last", std::move(data));
     return out;
   }
-
   // The last speed with a film, by its place.
   [[nodiscard]] std::size_t last() const {
-    std::size_t out = rows.size() - 1;
+    std::size_t out = reasons.size() - 1;
     while (!reasons[out].empty()) --out;
     return out;
   }
-
   // Of the journal there, in clearances.
   [[nodiscard]] std::array<double, 2> place() const {
-    const double e = at(last(), "eccentricity"), angle = at(last(), "attitude");
+    const double e = table.column("eccentricity")[last()], angle = table.column("attitude")[last()];
     return {e * std::cos(angle), e * std::sin(angle)};
   }
-
-  [[nodiscard]] double at(std::size_t row, std::string_view column) const {
-    for (std::size_t c = 0; c < thd_columns().size(); ++c)
-      if (thd_columns()[c].name == column) return rows[row][c];
-    throw core::Bug("a column of the table is missing");
-  }
-
   void read(const io::Group& from) {
-    const std::vector<double>& flat = from.reals("rows");
-    const auto width = static_cast<std::ptrdiff_t>(thd_columns().size());
-    for (auto at = flat.begin(); at != flat.end(); at += width) rows.emplace_back(at, at + width);
+    table.read(from.group("table"));
     reasons = from.strings("reasons");
     unsettled = from.strings("unsettled");
   }
@@ -116,8 +99,8 @@ void warn_of_vortices(io::StudySummary& summary, const ThdOptions& options, cons
   const thermal::Fluid fluid = thermal::make_fluid(options.fluid);
   const film::Geometry& g = *bearing.geometry;
   double most = 0, speed = 0;
-  for (std::size_t k = 0; k < sweep.rows.size(); ++k) {
-    const double t = sweep.at(k, "mean_temperature"), omega = options.speeds[k].value;
+  for (std::size_t k = 0; k < sweep.table.rows(); ++k) {
+    const double t = sweep.table.column("mean_temperature")[k], omega = options.speeds[k].value;
     const double reynolds = fluid.rho(options.ambient.pressure, t) * std::abs(omega) * g.radius * g.clearance /
                             thermal::viscosity(fluid.viscosity, t).value;
     if (reynolds > most) {
@@ -167,9 +150,9 @@ StudyResult ThdStudy::run(Context& context) {
   Pieces pieces(results, context.resume, true, core::size_of(context.comm));
   SpeedSweep sweep;
   std::vector<double> last;
-  if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
+  if (pieces.state().has_group("table")) sweep.read(pieces.state());
   SolvedFilm solved;  // at the last speed
-  for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
+  for (std::size_t k = sweep.reasons.size(); k < options.speeds.size(); ++k) {
     const double speed = options.speeds[k].value;
     results.progress(fmt::format("speed {:.6g} rad/s", speed));
     FilmStart start;
@@ -180,7 +163,7 @@ StudyResult ThdStudy::run(Context& context) {
             context.comm,
             [&] {
               solved = solve_film(context.comm, options, geometry, speed, start);
-              sweep.rows.push_back(thd_row(*solved.film, speed));
+              append_thd(sweep.table, *solved.film, speed);
             },
             reason)) {
       sweep.lose(speed, reason);
@@ -216,17 +199,15 @@ StudyResult ThdStudy::run(Context& context) {
     if (there) put_film(solved, speed, sweep.place(), pieces);
   }
   auto& table = group.child("budget");
-  for (std::size_t c = 0; c < thd_columns().size(); ++c) {
-    table.put(thd_columns()[c].name, column(sweep.rows, [c](const auto& row) { return row[c]; }), thd_columns()[c].unit,
-              thd_columns()[c].description);
-  }
+  for (const io::Table::Column& c : sweep.table.columns())
+    table.put(c.name, sweep.table.column(c.name), c.unit, c.description);
   if (std::ranges::any_of(sweep.reasons, [](const std::string& why) { return !why.empty(); }))
     table.put("reason", sweep.reasons, "why there is no film at the speed; empty: there is one");
   summary.points = static_cast<long>(std::ranges::count(sweep.reasons, ""));
   warn_of_vortices(summary, options, context.machine.bearings[which], sweep);
   // A speed without its film was asked for in vain: what there is of the others is kept, and the run says so.
   std::vector<std::string> lost;
-  for (std::size_t k = 0; k < sweep.rows.size(); ++k)
+  for (std::size_t k = 0; k < sweep.reasons.size(); ++k)
     if (!sweep.reasons[k].empty())
       lost.push_back(fmt::format("no film at {:.6g} rad/s: {}", options.speeds[k].value, sweep.reasons[k]));
   if (!lost.empty()) return results.finish(fmt::format("{}", fmt::join(lost, "; ")), false);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "study/columns.hpp"
 #include "study/findings.hpp"
 
 namespace whirl::study {
@@ -34,55 +35,39 @@ double dissipation(const ThdAtSpeed& film, const thermal::FlowReport& report) {
 
 }  // namespace
 
-std::span<const ThdColumn> thd_columns() {
-  static constexpr ThdColumn table[] = {
-      {"parameter", "rad/s", "shaft speed"},
-      {"power_loss", "W", "friction torque times speed"},
-      {"heat", "W", "that the motion leaves in the film: of a gas dissipation and work of pressure"},
-      {"dissipation", "W", "viscosity times the square of the shear rate, over the film"},
-      {"expansion", "W",
-       "velocity times gradient of pressure, over the film: negative where the pressure falls along the flow"},
-      {"heat_bush", "W", "conducted to the bush"},
-      {"heat_journal", "W", "conducted to the journal"},
-      {"enthalpy", "W", "carried away through the ends, less what comes in"},
-      {"residual", "W", "what the balance of the whole film leaves"},
-      {"mean_temperature", "K", "of the film, by volume"},
-      {"minimum_temperature", "K", "of the cells of the film"},
-      {"maximum_temperature", "K", "of the cells of the film"},
-      {"peak_bush_temperature", "K", "greatest temperature of the bush's surface"},
-      {"mass_flow", "kg/s", "of orifices and grooves"},
-      {"load_x", "N", "force of the journal on the film"},
-      {"load_y", "N", "force of the journal on the film"},
-      {"iterations", "1", "rounds of flow and heat"},
-      {"eccentricity", "1", "of the journal, in clearances"},
-      {"attitude", "rad", "direction of the journal from the bearing's middle, from +x"}};
-  return table;
+io::Table thd_table() {
+  return io::Table(
+      {{"parameter", "rad/s", "shaft speed"},
+       {"power_loss", "W", "friction torque times speed"},
+       {"heat", "W", "that the motion leaves in the film: of a gas dissipation and work of pressure"},
+       {"dissipation", "W", "viscosity times the square of the shear rate, over the film"},
+       {"expansion", "W",
+        "velocity times gradient of pressure, over the film: negative where the pressure falls along the flow"},
+       {"heat_bush", "W", "conducted to the bush"},
+       {"heat_journal", "W", "conducted to the journal"},
+       {"enthalpy", "W", "carried away through the ends, less what comes in"},
+       {"residual", "W", "what the balance of the whole film leaves"},
+       {"mean_temperature", "K", "of the film, by volume"},
+       {"minimum_temperature", "K", "of the cells of the film"},
+       {"maximum_temperature", "K", "of the cells of the film"},
+       {"peak_bush_temperature", "K", "greatest temperature of the bush's surface"},
+       {"mass_flow", "kg/s", "of orifices and grooves"},
+       {"load_x", "N", "force of the journal on the film"},
+       {"load_y", "N", "force of the journal on the film"},
+       {"iterations", "1", "rounds of flow and heat"},
+       {"eccentricity", "1", "of the journal, in clearances"},
+       {"attitude", "rad", "direction of the journal from the bearing's middle, from +x"}});
 }
 
-std::vector<double> thd_row(ThdAtSpeed& film, double speed) {
+void append_thd(io::Table& table, ThdAtSpeed& film, double speed) {
   thermal::ThdSolver& thd = film.thd();
   const thermal::FlowReport report = thd.flow().report(thd.flows());
   const thermal::EnergyBudget budget = thd.budget();
   const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
-  return {speed,
-          report.power,
-          report.heat,
-          dissipation(film, report),
-          report.expansion,
-          budget.bush,
-          budget.journal,
-          budget.ends - budget.supply,
-          budget.residual(),
-          t.mean,
-          t.minimum,
-          t.maximum,
-          surface_numbers(film, thd.surface(false)).maximum,
-          report.inflow,
-          -report.force[0],
-          -report.force[1],
-          static_cast<double>(film.cost().iterations),
-          film.eccentricity(),
-          film.attitude()};
+  table.append({speed, report.power, report.heat, dissipation(film, report), report.expansion, budget.bush,
+                budget.journal, budget.ends - budget.supply, budget.residual(), t.mean, t.minimum, t.maximum,
+                surface_numbers(film, thd.surface(false)).maximum, report.inflow, -report.force[0], -report.force[1],
+                static_cast<double>(film.cost().iterations), film.eccentricity(), film.attitude()});
 }
 
 void put_thd_values(io::StudySummary& summary, ThdAtSpeed& film, const ThdOptions& options) {
@@ -174,28 +159,26 @@ double grown(const thermal::WallOptions& wall, double radius, double temperature
 void put_properties(io::Group& group, const ThdOptions& options, const thermal::Fluid& fluid,
                     const film::Geometry& geometry) {
   if (options.temperatures.empty()) return;
-  std::vector<double> temperature, clearance, viscosity, density, conductivity, capacity, prandtl, ratio;
-  for (const deck::Quantity& given : options.temperatures) {
-    const double t = given.value;
-    temperature.push_back(t);
-    clearance.push_back(geometry.clearance + grown(options.bush, geometry.radius, t) -
-                        grown(options.journal, geometry.radius, t));
-    viscosity.push_back(thermal::viscosity(fluid.viscosity, t).value);
-    density.push_back(fluid.rho(options.ambient.pressure, t));
-    conductivity.push_back(fluid.k(t));
-    capacity.push_back(fluid.c(t));
-    prandtl.push_back(fluid.prandtl(t));
-    ratio.push_back(fluid.c(t) / (fluid.c(t) - fluid.gas_constant));
-  }
+  const std::vector<double> temperature = column(options.temperatures, &deck::Quantity::value);
+  const auto over = [&](const auto& of) { return column(temperature, of); };
+  const auto clearance = [&](double t) {
+    return geometry.clearance + grown(options.bush, geometry.radius, t) - grown(options.journal, geometry.radius, t);
+  };
   io::Group& table = group.child("properties");
   table.put("temperature", temperature, "K", "of fluid, bush and journal");
-  table.put("clearance", clearance, "m", "that bush and journal leave");
-  table.put("viscosity", viscosity, "Pa s", "dynamic");
-  table.put("density", density, "kg/m^3", "at the pressure of the ambient");
-  table.put("conductivity", conductivity, "W/(m K)", "of the fluid");
-  table.put("heat_capacity", capacity, "J/(kg K)", "of the fluid at constant pressure");
-  table.put("prandtl", prandtl, "1", "viscosity times heat capacity over conductivity");
-  if (fluid.gas) table.put("heat_ratio", ratio, "1", "ratio of specific heats");
+  table.put("clearance", over(clearance), "m", "that bush and journal leave");
+  table.put("viscosity", over([&](double t) { return thermal::viscosity(fluid.viscosity, t).value; }), "Pa s",
+            "dynamic");
+  table.put("density", over([&](double t) { return fluid.rho(options.ambient.pressure, t); }), "kg/m^3",
+            "at the pressure of the ambient");
+  table.put("conductivity", over([&](double t) { return fluid.k(t); }), "W/(m K)", "of the fluid");
+  table.put("heat_capacity", over([&](double t) { return fluid.c(t); }), "J/(kg K)",
+            "of the fluid at constant pressure");
+  table.put("prandtl", over([&](double t) { return fluid.prandtl(t); }), "1",
+            "viscosity times heat capacity over conductivity");
+  if (fluid.gas)
+    table.put("heat_ratio", over([&](double t) { return fluid.c(t) / (fluid.c(t) - fluid.gas_constant); }), "1",
+              "ratio of specific heats");
 }
 
 }  // namespace whirl::study
