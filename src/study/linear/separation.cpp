@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "study/brief.hpp"
+
 namespace whirl::study {
 
 namespace {
@@ -43,20 +45,15 @@ std::string margin_verdict(const io::Quantity& amplification_factor, const io::Q
 }
 
 std::vector<CriticalSpeed> critical_speeds_of(const io::StudySummary& summary) {
-  constexpr std::string_view head = "critical.", tail = ".speed";
+  const Values v(summary);
   std::vector<CriticalSpeed> out;
-  for (const auto& [name, speed] : summary.values) {
-    if (!name.starts_with(head) || !name.ends_with(tail)) continue;
-    CriticalSpeed c{name.substr(head.size(), name.size() - head.size() - tail.size()), speed};
-    for (const auto& [value, member] : {std::pair{"mode", &CriticalSpeed::mode},
-                                        {"log_decrement", &CriticalSpeed::log_decrement},
-                                        {"amplification_factor", &CriticalSpeed::amplification_factor},
-                                        {"separation_margin", &CriticalSpeed::separation_margin},
-                                        {"required_margin", &CriticalSpeed::required_margin}}) {
-      const std::string full = fmt::format("{}{}.{}", head, c.number, value);
-      const auto at = std::ranges::find(summary.values, full, [](const auto& v) { return v.first; });
-      if (at != summary.values.end()) c.*member = at->second;
-    }
+  for (const std::string& number : v.between("critical.", ".speed")) {
+    const std::string head = "critical." + number + ".";
+    CriticalSpeed c{number, v[head + "speed"], v[head + "mode"]};
+    c.log_decrement = v[head + "log_decrement"];
+    c.amplification_factor = v[head + "amplification_factor"];
+    c.separation_margin = v[head + "separation_margin"];
+    c.required_margin = v[head + "required_margin"];
     const double decrement = c.log_decrement.value;
     if (std::isfinite(decrement)) c.stability = decrement > 0 ? "stable" : decrement < 0 ? "unstable" : "undamped";
     io::Quantity factor = c.amplification_factor;
@@ -65,13 +62,12 @@ std::vector<CriticalSpeed> critical_speeds_of(const io::StudySummary& summary) {
     c.verdict = margin_verdict(factor, c.separation_margin, c.required_margin);
     const io::ModeEntry* nearest = nullptr;
     for (const io::ModeEntry& m : summary.modes) {
-      const auto number = m.more.find("mode");
-      if (number == m.more.end() || number->second != c.mode.value) continue;
-      if (!nearest || std::abs(m.speed - speed.value) < std::abs(nearest->speed - speed.value)) nearest = &m;
+      const auto mode = m.more.find("mode");
+      if (mode == m.more.end() || mode->second != c.mode.value) continue;
+      if (!nearest || std::abs(m.speed - c.speed.value) < std::abs(nearest->speed - c.speed.value)) nearest = &m;
     }
     if (nearest) c.whirl = nearest->whirl;
-    const bool excited = std::ranges::find(summary.values, fmt::format("{}{}.excited", head, c.number),
-                                           [](const auto& v) { return v.first; }) == summary.values.end();
+    const bool excited = !v.get(head + "excited");
     if (!excited && c.whirl == "backward" && (c.verdict == "too near" || c.verdict == "undetermined"))
       c.verdict = not_excited;
     out.push_back(std::move(c));

@@ -89,7 +89,6 @@ LinearityRecord LinearityRunner::record(double level, const std::function<void(d
   }
   LinearityRecord out;
   out.steps = static_cast<double>(integrator.work().steps);
-  out.rejected = static_cast<double>(integrator.work().rejected);
   for (std::size_t s = 0; s < signals; ++s) {
     const double count_here = static_cast<double>(record[s].size());
     double mean = 0, square = 0;

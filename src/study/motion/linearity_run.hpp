@@ -23,11 +23,11 @@ struct LinearityRecord {
   double peak = 0;                      ///< largest distance from the mean [m]
   std::array<double, 2> mean{}, rms{};  ///< of the displacement from the equilibrium; about its mean [m]
   std::array<double, 2> force{};        ///< root mean squares [N]
-  double steps = 0, rejected = 0;       ///< in time
+  double steps = 0;                     ///< in time
   std::vector<double> excerpt;          ///< beginning of the record, [sample][signal]
   transient::SpectralMatrix spectra;    ///< of the signals
   void members(auto& archive) {
-    archive(peak, mean, rms, force, steps, rejected, excerpt);
+    archive(peak, mean, rms, force, steps, excerpt);
     archive(spectra.resolution, spectra.samples, spectra.averages, spectra.segments);
     std::size_t lines = spectra.lines.size();
     archive(lines);

@@ -31,8 +31,6 @@ public:
   [[nodiscard]] double height(system::Plant& system, Vec x) const;
   /// "B1.y = 1.2e-05 m".
   [[nodiscard]] std::string text(const system::ShownPlaces& places) const;
-  [[nodiscard]] const std::vector<Term>& terms() const { return terms_; }
-  [[nodiscard]] double value() const { return value_; }
 
 private:
   std::vector<Term> terms_;
