@@ -58,8 +58,8 @@ bool grooves_move(const ThdOptions& o, const std::vector<std::array<int, 3>>& me
 // Values on another mesh with the residual of the energy behind them; not a number where there is no answer, with the
 // reason.
 std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry, double speed,
-                              const FilmStart& start, std::size_t count, std::string& reason) {
-  std::vector<double> out(count + 1, io::no_value);
+                              const FilmStart& start, const SummaryBars& bars, std::string& reason) {
+  std::vector<double> out;
   // A mesh of few rows is solved by each rank for itself.
   const bool shared = options.cells[1] + 1 >= 2 * core::size_of(comm);
   const bool answered = has_answer(
@@ -73,12 +73,14 @@ std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const fi
         }
         io::StudySummary there;
         put_thd_values(there, film, options);
-        core::require(there.values.size() == count, "the same values on all meshes");
-        for (std::size_t k = 0; k < count; ++k) out[k] = there.values[k].second.value;
-        out[count] = film.thd().budget().residual();
+        out = bars.row(there);
+        out.push_back(film.thd().budget().residual());
       },
       &reason);
-  if (!answered) out.assign(count + 1, io::no_value);
+  if (!answered) {
+    out = bars.row({});
+    out.push_back(io::no_value);
+  }
   core::share(comm, out.data(), out.size());
   return out;
 }
@@ -133,16 +135,13 @@ void put_thd_bars(Context& context, ThdAtSpeed& film, const ThdOptions& options,
       there.cells = meshes[m];
       for (thermal::WallOptions* wall : {&there.bush, &there.journal}) wall->layers = std::max(2, wall->layers >> m);
       std::pair<std::vector<double>, std::string> out;
-      out.first = values_on(context.comm, there, geometry, speed, start, count, out.second);
+      out.first = values_on(context.comm, there, geometry, speed, start, bars, out.second);
       return out;
     });
     found.push_back(std::move(values));
     if (!reason.empty())
       summary.warnings.push_back(fmt::format("the error bars lack the mesh of {} cells: {}", cells, reason));
-    io::StudySummary there;
-    for (std::size_t k = 0; k < count; ++k)
-      if (std::isfinite(found[m][k])) there.set(summary.values[k].first, found[m][k], summary.values[k].second.unit);
-    bars.add(Axis::around, std::cbrt(total(meshes[0]) / total(meshes[m])), there);
+    bars.add(Axis::around, std::cbrt(total(meshes[0]) / total(meshes[m])), {found[m].begin(), found[m].end() - 1});
   }
   if (meshes.size() > 1) {
     io::Group& group = context.results.group().child("meshes");

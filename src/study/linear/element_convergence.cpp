@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "study/bars/shaft_mesh.hpp"
+#include "study/columns.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/linear/linear_brief.hpp"
@@ -47,16 +48,19 @@ double condition_number(const M& matrix) {
   return sizes(0) / sizes(sizes.size() - 1);
 }
 
-// Of the modes' vectors V, of stiffness and of mass, all in the system's scales, 2-norm; not a number where the machine
-// is too large for dense matrices.
-struct Conditions {
-  double vectors = io::no_value, stiffness = io::no_value, mass = io::no_value;
+// 2-norm, in the system's scales; not numbers where the machine is too large for dense matrices.
+struct ConditionNumber {
+  const char *name, *of;
 };
+constexpr std::array<ConditionNumber, 3> condition_numbers{{{"vectors", "of the modes' vectors, each of length one"},
+                                                            {"stiffness", "of dF/dx by the coordinates"},
+                                                            {"mass", "of the mass"}}};
+using Conditions = std::array<double, condition_numbers.size()>;
 
 Conditions conditions(system::RotorSystem& system, Vec x) {
   spectral::EigenOptions options;
   const PetscInt n = system.size(), q = system.coordinates();
-  Conditions out;
+  Conditions out{io::no_value, io::no_value, io::no_value};
   if (n > options.dense_below) return out;
   core::Vector states = core::duplicate(x), rows = core::duplicate(x), rest = core::duplicate(x);
   system.scales(states.get(), rows.get());
@@ -85,9 +89,9 @@ Conditions conditions(system::RotorSystem& system, Vec x) {
         }
         v.col(columns++).normalize();
       }
-    if (columns == n) out.vectors = condition_number(v);
-    out.stiffness = condition_number(stiffness);
-    out.mass = condition_number(mass);
+    if (columns == n) out[0] = condition_number(v);
+    out[1] = condition_number(stiffness);
+    out[2] = condition_number(mass);
   });
   return out;
 }
@@ -95,10 +99,8 @@ Conditions conditions(system::RotorSystem& system, Vec x) {
 struct Found {
   double elements = 0;
   std::vector<double> frequency, forward;
-  Conditions condition;
-  void members(auto& archive) {
-    archive(elements, frequency, forward, condition.vectors, condition.stiffness, condition.mass);
-  }
+  Conditions condition{io::no_value, io::no_value, io::no_value};
+  void members(auto& archive) { archive(elements, frequency, forward, condition); }
 };
 
 // Order at which the last three meshes with equal ratios of parts converge.
@@ -141,7 +143,7 @@ StudyResult ElementConvergence::run(Context& context) {
     // The lowest that vibrate; growing ones that stand among the others are as near on every mesh.
     std::erase_if(modes, [](const ShaftMode& m) { return !spectral::vibrates(m.lambda); });
     const std::vector<double> mass = rotor::node_masses(train.rotor);
-    Found out{static_cast<double>(train.rotor.segments.size()), {}, {}, {}};
+    Found out{static_cast<double>(train.rotor.segments.size()), {}, {}};
     if (options.condition) out.condition = conditions(system, x);
     for (std::size_t k = 0; k < count; ++k) {
       const bool known = k < modes.size();
@@ -163,11 +165,9 @@ StudyResult ElementConvergence::run(Context& context) {
     const std::string name(deck::name_of(options.elements[e]));
     auto& table = group.child("convergence").child(name);
     table.set("place", static_cast<int>(e));
-    std::vector<double> elements, frequency, forward, error, shift, columns[3];
+    std::vector<double> elements, frequency, forward, error, shift;
     for (const Found& f : of) {
       elements.push_back(f.elements);
-      for (std::size_t c = 0; c < 3; ++c)
-        columns[c].push_back(std::array{f.condition.vectors, f.condition.stiffness, f.condition.mass}[c]);
       for (std::size_t k = 0; k < count; ++k) {
         frequency.push_back(f.frequency[k]);
         forward.push_back(f.forward[k]);
@@ -182,16 +182,11 @@ StudyResult ElementConvergence::run(Context& context) {
     table.put("error", {meshes, count}, error, "1", "relative distance from the last mesh");
     table.label_each({io::numbered(count, "mode")});
     table.put("shift", shift, "1", "of the last mesh from the first kind of element, relative");
-    if (options.condition) {
-      const char* const names[] = {"condition_vectors", "condition_stiffness", "condition_mass"};
-      const char* const texts[] = {"of the modes' vectors, each of length one", "of dF/dx by the coordinates",
-                                   "of the mass"};
-      for (std::size_t c = 0; c < 3; ++c)
-        table.put(names[c], columns[c], "1",
-                  fmt::format("condition number {}, 2-norm in the states' scales", texts[c]));
-      summary.set(name + ".condition_vectors", columns[0].back(), "1");
-      summary.set(name + ".condition_stiffness", columns[1].back(), "1");
-      summary.set(name + ".condition_mass", columns[2].back(), "1");
+    for (std::size_t c = 0; c < condition_numbers.size() && options.condition; ++c) {
+      const std::string column_name = fmt::format("condition_{}", condition_numbers[c].name);
+      table.put(column_name, column(of, [c](const Found& f) { return f.condition[c]; }), "1",
+                fmt::format("condition number {}, 2-norm in the states' scales", condition_numbers[c].of));
+      summary.set(name + "." + column_name, of.back().condition[c], "1");
     }
     const std::size_t last = meshes - 1;
     const double ratio = static_cast<double>(options.parts[last]) / options.parts[last - 1];
@@ -273,8 +268,8 @@ io::Brief ElementConvergence::brief(const StudyResult& result, std::span<const i
     if (!options.condition) continue;
     auto& row = conditions.rows.emplace_back();
     row.emplace_back(name);
-    for (const char* column : {"condition_vectors", "condition_stiffness", "condition_mass"}) {
-      const std::vector<double>& c = table.reals(column);
+    for (const ConditionNumber& number : condition_numbers) {
+      const std::vector<double>& c = table.reals(fmt::format("condition_{}", number.name));
       row.emplace_back(to_digits({c.back(), "1"}, 3));
       row.emplace_back(to_digits({std::log(c.back() / c[meshes - 2]) / std::log(n.back() / n[meshes - 2]), "1"}, 3));
     }

@@ -203,36 +203,35 @@ private:
   void append(long revolution) {
     const Revolution& r = neighbours_.at(revolution);
     const std::size_t n = places_.names.size();
-    std::vector<double> amplitude, x_max, x_min, y_max, y_min, eccentricity, node, node_x, node_y;
+    // Of the journals, or of the nodes behind them.
+    const auto each = [&](bool journals, const auto& value) {
+      std::vector<double> out;
+      for (std::size_t i = journals ? 0 : n; i < (journals ? n : r.samples.size()); ++i) out.push_back(value(i));
+      return out;
+    };
     const auto about_mean = [&](std::size_t i) { return r.distance(i, neighbours_.centre(revolution, i)); };
-    for (std::size_t b = 0; b < n; ++b) {
-      amplitude.push_back(about_mean(b));
-      x_max.push_back(r.extreme(b, 0, 1));
-      x_min.push_back(r.extreme(b, 0, -1));
-      y_max.push_back(r.extreme(b, 1, 1));
-      y_min.push_back(r.extreme(b, 1, -1));
-      const double c = places_.clearances[b];
-      eccentricity.push_back(c > 0 ? r.distance(b, {0, 0}) / c : 0);
-    }
-    for (std::size_t i = n; i < r.samples.size(); ++i) {
-      node.push_back(about_mean(i));
-      node_x.push_back((r.extreme(i, 0, 1) - r.extreme(i, 0, -1)) / 2);
-      node_y.push_back((r.extreme(i, 1, 1) - r.extreme(i, 1, -1)) / 2);
-    }
+    const auto extreme = [&](std::size_t direction, double sign) {
+      return each(true, [&](std::size_t b) { return r.extreme(b, direction, sign); });
+    };
+    const auto travel = [&](std::size_t direction) {
+      return each(false, [&](std::size_t i) { return (r.extreme(i, direction, 1) - r.extreme(i, direction, -1)) / 2; });
+    };
     const double time = drive_.time_of(2 * std::numbers::pi * (static_cast<double>(revolution) + 1));
+    const std::vector<double> amplitude = each(true, about_mean);
     std::vector<std::vector<double>> row{{static_cast<double>(revolution + 1)},
                                          {time},
                                          {speed_at(static_cast<double>(revolution) + 0.5)},
                                          {in_transient(time, amplitude) ? 1.0 : 0.0},
-                                         amplitude,
-                                         x_max,
-                                         x_min,
-                                         y_max,
-                                         y_min,
-                                         eccentricity};
+                                         amplitude};
+    for (const std::size_t direction : {0U, 1U})
+      for (const double sign : {1.0, -1.0}) row.push_back(extreme(direction, sign));
+    row.push_back(each(true, [&](std::size_t b) {
+      const double c = places_.clearances[b];
+      return c > 0 ? r.distance(b, {0, 0}) / c : 0;
+    }));
     const auto films = thinnest_.begin() + revolution * static_cast<std::ptrdiff_t>(n);
     row.emplace_back(films, films + static_cast<std::ptrdiff_t>(n));
-    if (!node.empty()) row.insert(row.end(), {node, node_x, node_y});
+    if (!options_.nodes.empty()) row.insert(row.end(), {each(false, about_mean), travel(0), travel(1)});
     table_.append(row);
   }
 
