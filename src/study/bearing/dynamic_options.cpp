@@ -1,6 +1,5 @@
 
 #include <algorithm>
-#include <cmath>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bearing/dynamic_coefficients.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <string_view>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"

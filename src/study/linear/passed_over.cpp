@@ -1,7 +1,6 @@
 #include "study/linear/passed_over.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

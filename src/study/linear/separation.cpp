@@ -1,13 +1,10 @@
 #include "study/linear/separation.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
 #include "study/brief.hpp"
