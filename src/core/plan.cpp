@@ -30,6 +30,7 @@ constexpr SolverOption table[] = {
      "`whole` or `transfer`: modes from the pencil of a machine with films, or by their transfer functions"},
     {"-modes_whole_states", "100000",
      "states of a machine with films up to which the pencil is searched: a limit of memory"},
+    {"-monodromy_products", "500", "products after which a search for multipliers is given up"},
     {"-motion_assembled", "0", "1: steps in time take matrices of all states, for comparison"},
     {"-motion_ts_type", "", "a scheme of PETSc makes the steps in time"},
     {"-newton_split_quantities", "0", "1: each field of a part stands by itself in `-newton_pc_type fieldsplit`"},
@@ -59,7 +60,6 @@ constexpr Prefix solvers[] = {
     {"interval_", "FGMRES of an interval of a cycle with its states spread"},
     {"journal_", "temperature of a journal"},
     {"modes_", "eigenvalues of the pencil"},
-    {"monodromy_", "leading multipliers"},
     {"motion_", "steps of PETSc in time"},
     {"newton_", "Newton's method on branches"},
     {"parts_", "films of a machine, each by itself"},
@@ -175,6 +175,10 @@ bool starts_coarse(double cells, int above) {
 
 std::int64_t kept_states() {
   return number("-parts_kept_states");
+}
+
+std::int64_t products() {
+  return number("-monodromy_products");
 }
 
 std::int64_t whole_states() {

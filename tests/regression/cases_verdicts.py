@@ -98,8 +98,8 @@ def many_bearings(h):
     largest = max(math.exp(m["real"] * period) for m in s["modes"]["modes"])
     h.close("largest multiplier of a shaft on twenty bearings", value(cycle, "at.5800.multiplier.modulus"), largest, 2e-5)
     h.true("stable", cycle["stability"] == "stable throughout" and not cycle.get("suspected"), str(cycle["stability"]))
-    # Where the search may not restart it does not converge: the cycles are there all the same.
-    lost = h.run(deck, "unknown", [], ["--", "-monodromy_eps_max_it", "1"], bars=False)["forced"]
+    # Where the search may not go on it does not converge: the cycles are there all the same.
+    lost = h.run(deck, "unknown", [], ["--", "-monodromy_products", "1"], bars=False)["forced"]
     h.true("cycles without multipliers are a result", lost["status"] == "completed" and lost["points"] == 2, str(lost["status"]))
     h.true("whose stability is not known", lost["stability"] != "stable throughout" and "undetermined" in stretches(lost), str(lost["ranges"]))
     h.true("with the reason", any("did not converge" in x["reason"] for x in lost["suspected"]), str(lost.get("suspected")))

@@ -68,6 +68,8 @@ enum class PressureWay { direct, multigrid };
 [[nodiscard]] std::int64_t kept_states();
 /// Machines with up to this many states are factorised where approximate inverses of their parts do not serve.
 [[nodiscard]] std::int64_t whole_states();
+/// Products with the monodromy matrix in one search for multipliers, at most.
+[[nodiscard]] std::int64_t products();
 /// What is said where a machine has more.
 [[nodiscard]] std::string too_large(std::int64_t states);
 

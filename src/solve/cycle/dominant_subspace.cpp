@@ -1,124 +1,170 @@
 #include "solve/cycle/dominant_subspace.hpp"
 
 #include <fmt/core.h>
-#include <slepceps.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "whirl/core/agree.hpp"
-#include "whirl/core/from_options.hpp"
-#include "whirl/core/shell.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/core/plan.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
 namespace {
 
-using core::check;
-using EigenSolver = core::Handle<EPS, EPSDestroy>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
 
-struct Context {
-  double radius;
-  bool below = false;  // an eigenvalue below the radius was met, so that all above it have converged
-};
-
-// They are looked at by falling modulus. Above the radius an eigenpair wants its tolerance relative to its eigenvalue;
-// of the first one below nothing is asked but that it stays there with its residual: the moduli of contracting films
-// fall by many powers of ten, and products of M do not hold the digits that a relative residual would ask for.
-PetscErrorCode error_of(EPS, PetscScalar re, PetscScalar im, PetscReal residual, PetscReal* error, void* raw) {
-  auto& c = *static_cast<Context*>(raw);
-  const double modulus = std::hypot(re, im);
-  const bool below = modulus + residual < c.radius;
-  c.below = c.below || below;
-  *error = below ? 0 : residual / modulus;
-  return 0;
+MatrixXd summed(MPI_Comm comm, MatrixXd m) {
+  MPI_Allreduce(MPI_IN_PLACE, m.data(), static_cast<int>(m.size()), MPI_DOUBLE, MPI_SUM, comm);
+  return m;
 }
 
-PetscErrorCode stop(EPS eps, PetscInt its, PetscInt max_it, PetscInt converged, PetscInt wanted,
-                    EPSConvergedReason* reason, void* raw) {
-  PetscCall(EPSStoppingBasic(eps, its, max_it, converged, wanted, reason, nullptr));
-  if (static_cast<Context*>(raw)->below) *reason = EPS_CONVERGED_USER;
-  return 0;
+// Eigenpairs of V^T M V and the residuals of their vectors.
+struct Ritz {
+  VectorXcd values;  // by falling modulus, the two of a pair side by side
+  MatrixXcd vectors;
+  Eigen::VectorXd residual;
+  MatrixXcd defect;  // M V y - mu V y of the first ones, this rank's rows
+};
+
+Ritz ritz(MPI_Comm comm, const MatrixXd& v, const MatrixXd& image, Index most) {
+  const MatrixXd projected = summed(comm, v.transpose() * image);
+  if (!projected.allFinite()) throw core::NotConverged("products with the monodromy matrix are not finite");
+  const spectral::Eigenpairs pairs = spectral::eigenpairs(projected);
+  std::vector<Index> order(static_cast<std::size_t>(pairs.values.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const double p = std::abs(pairs.values(a)), q = std::abs(pairs.values(b));
+    return p > q;
+  });
+  Ritz out{pairs.values(order), pairs.vectors(Eigen::all, order), {}, {}};
+  const Index looked_at = std::min<Index>(most, out.values.size());
+  out.defect = (image - v * projected) * out.vectors.leftCols(looked_at);
+  out.residual = summed(comm, out.defect.colwise().squaredNorm().transpose()).cwiseSqrt();
+  return out;
+}
+
+// Real columns that span these vectors, one for a real value, two for a pair.
+MatrixXd real_columns(const VectorXcd& values, const MatrixXcd& vectors, const std::vector<Index>& of) {
+  MatrixXd out(vectors.rows(), 2 * static_cast<Index>(of.size()));
+  Index next = 0;
+  for (const Index k : of) {
+    if (values(k).imag() < 0) continue;  // the other one of a pair has both
+    out.col(next++) = vectors.col(k).real();
+    if (values(k).imag() > 0) out.col(next++) = vectors.col(k).imag();
+  }
+  return out.leftCols(next);
 }
 
 }  // namespace
 
-DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec start,
-                                   const SubspaceOptions& options) {
-  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(start));
-  PetscInt local = 0, n = 0;
-  check(VecGetLocalSize(start, &local));
-  check(VecGetSize(start, &n));
-  Context context{options.radius};
-  core::Gate gate(comm);
-  const core::Matrix shell = core::make_shell(comm, local, gate, [&](Vec v, Vec y) {
-    check(VecCopy(v, y));
-    multiply(y);
-  });
+MatrixXd generic_columns(MPI_Comm comm, Index local, Index columns) {
+  long before = 0;
+  const long mine = local;
+  MPI_Exscan(&mine, &before, 1, MPI_LONG, MPI_SUM, comm);
+  MatrixXd out(local, columns);
+  for (Index c = 0; c < columns; ++c)
+    for (Index k = 0; k < local; ++k) {
+      const double phase = (0.7 + 0.4 * static_cast<double>(c)) * static_cast<double>(before + k);
+      out(k, c) = 1 + std::sin(phase + std::sin(phase * phase));
+    }
+  return out;
+}
 
-  DominantSubspace out;
-  const auto most = std::min<PetscInt>(n, options.most);
-  for (PetscInt wanted = std::min<PetscInt>(most, options.guess);; wanted = std::min<PetscInt>(most, 2 * wanted)) {
-    EigenSolver eps;
-    check(EPSCreate(comm, eps.put()));
-    check(EPSSetOptionsPrefix(eps.get(), "monodromy_"));
-    check(EPSSetOperators(eps.get(), shell.get(), nullptr));
-    check(EPSSetProblemType(eps.get(), EPS_NHEP));
-    check(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
-    check(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_MAGNITUDE));
-    const PetscInt spare = options.spare > 0 ? std::max<PetscInt>(options.spare, wanted / 2) : wanted + 6;
-    check(EPSSetDimensions(eps.get(), wanted, std::min<PetscInt>(n, wanted + spare), PETSC_DEFAULT));
-    check(EPSSetTolerances(eps.get(), options.tolerance, options.restarts));
-    check(EPSSetConvergenceTestFunction(eps.get(), error_of, &context, nullptr));
-    check(EPSSetStoppingTestFunction(eps.get(), stop, &context, nullptr));
-    context.below = false;
-    check(EPSSetInitialSpace(eps.get(), 1, &start));
-    core::set_from_options(eps.get());
-    gate.rethrow(EPSSolve(eps.get()));
-    PetscInt converged = 0;
-    check(EPSGetConverged(eps.get(), &converged));
-    if (converged < wanted && !context.below && options.persistent && wanted < most) continue;
-    if (converged < wanted && !context.below)
-      core::agree(comm, [&] {
-        throw core::NotConverged(fmt::format("only {} of {} multipliers converged", converged, wanted));
-      });
-    out.values.clear();
-    PetscInt large = 0;
-    for (PetscInt i = 0; i < converged; ++i) {
-      PetscScalar re = 0, im = 0;
-      check(EPSGetEigenvalue(eps.get(), i, &re, &im));
-      out.values.emplace_back(re, im);
-      if (std::abs(out.values.back()) > options.radius) ++large;
+void add_orthonormal(MPI_Comm comm, MatrixXd& v, const MatrixXd& more) {
+  constexpr double in_span = 1e-8;  // what is left of such a column is rounding
+  const Index known = v.cols();
+  const Eigen::VectorXd sizes = summed(comm, more.colwise().squaredNorm().transpose()).cwiseSqrt();
+  MatrixXd x = more;
+  for (int pass = 0; pass < 2 && known > 0; ++pass) x -= v * summed(comm, v.transpose() * x);
+  v.conservativeResize(x.rows(), known + x.cols());
+  Index end = known;
+  for (Index c = 0; c < x.cols(); ++c) {
+    Eigen::VectorXd column = x.col(c);
+    for (int pass = 0; pass < 2; ++pass)
+      column -= v.leftCols(end) * summed(comm, v.leftCols(end).transpose() * column).col(0);
+    const double size = std::sqrt(summed(comm, MatrixXd::Constant(1, 1, column.squaredNorm()))(0));
+    if (size > in_span * sizes(c)) v.col(end++) = column / size;
+  }
+  v.conservativeResize(Eigen::NoChange, end);
+}
+
+DominantSubspace dominant_subspace(MPI_Comm comm, const BlockProduct& multiply, const MatrixXd& start,
+                                   const SubspaceOptions& options) {
+  constexpr Index probes = 2, first = 4, widest = 240;
+  // A Ritz value below the radius tells nothing of what a small basis does not hold: it has to be an eigenvalue, or the
+  // basis has room for more than are wanted.
+  constexpr double exact = 1e-8;
+  const Index spare = start.cols() > 0 ? 12 : 20;
+  const Index local = start.rows();
+  long states = local;
+  MPI_Allreduce(MPI_IN_PLACE, &states, 1, MPI_LONG, MPI_SUM, comm);
+  const auto n = static_cast<Index>(states);
+  const Index beside = std::clamp<Index>(n - start.cols(), 0, start.cols() > 0 ? probes : first);
+  MatrixXd v(local, 0), image(local, 0), more(local, start.cols() + beside);
+  more << start, generic_columns(comm, local, beside);
+  for (Index products = 0;;) {
+    const Index known = v.cols();
+    add_orthonormal(comm, v, more);
+    image.conservativeResize(Eigen::NoChange, v.cols());
+    image.rightCols(v.cols() - known) = multiply(v.rightCols(v.cols() - known));
+    products += v.cols() - known;
+
+    // The most that may be asked for, with the other one of a pair and one below the radius.
+    Ritz found = ritz(comm, v, image, std::min<Index>(options.most, n) + 2);
+    DominantSubspace out;
+    std::vector<Index> large, open;
+    bool below = false;
+    for (Index k = 0; k < found.residual.size() && !below; ++k) {
+      const double modulus = std::abs(found.values(k));
+      const bool second = found.values(k).imag() < 0;
+      if (static_cast<int>(large.size()) >= options.most && !second) break;
+      below = modulus + found.residual(k) < options.radius &&
+              (found.residual(k) <= exact || v.cols() >= std::min(n, std::ssize(large) + spare));
+      if (!below && found.residual(k) > options.tolerance * modulus) open.push_back(k);
+      if (!below && modulus > options.radius) large.push_back(k);
+      out.values.push_back(found.values(k));
+      if (!below && modulus <= options.radius) break;  // whether it is below is what is open
     }
-    if (large == converged && wanted < most) continue;
-    std::vector<core::Vector> vectors;
-    std::vector<Vec> raw;
-    for (PetscInt i = 0; i < converged; ++i) {
-      vectors.push_back(core::duplicate(start));
-      raw.push_back(vectors.back().get());
+    const bool enough = below || static_cast<int>(large.size()) >= options.most || v.cols() == n;
+    if (open.empty() && enough) {
+      add_orthonormal(comm, out.basis = MatrixXd(local, 0), v * real_columns(found.values, found.vectors, large));
+      return out;
     }
-    check(EPSGetInvariantSubspace(eps.get(), raw.data()));
-    out.basis.resize(local, large);
-    for (PetscInt i = 0; i < large; ++i) {
-      const core::ReadArray a(raw[static_cast<std::size_t>(i)]);
-      out.basis.col(i) = Eigen::Map<const Eigen::VectorXd>(a.data(), local);
-    }
-    std::stable_sort(out.values.begin(), out.values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
-    return out;
+    if (products >= core::plan::products() || v.cols() == known)
+      throw core::NotConverged(fmt::format("only {} of {} multipliers converged after {} products",
+                                           out.values.size() - open.size(), out.values.size(), products));
+    more = open.empty() ? MatrixXd(generic_columns(comm, local, v.cols() + probes).rightCols(probes))
+                        : real_columns(found.values, found.defect, open);
+    if (n <= widest || v.cols() + more.cols() <= widest) continue;
+    // Begins again from twice as many vectors as are wanted.
+    std::vector<Index> kept(
+        static_cast<std::size_t>(std::min<Index>(found.values.size(), 2 * std::ssize(out.values) + 8)));
+    std::iota(kept.begin(), kept.end(), Index{0});
+    const MatrixXd columns = real_columns(found.values, found.vectors, kept);
+    const MatrixXd q =
+        Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
+    v = v * q;
+    image = image * q;
   }
 }
 
-DominantSubspace dominant_multipliers(const std::function<void(Vec)>& multiply, Vec start, SubspaceOptions options,
-                                      double& radius) {
+DominantSubspace dominant_multipliers(MPI_Comm comm, const BlockProduct& multiply, const MatrixXd& start,
+                                      SubspaceOptions options, double& radius) {
   constexpr double above_a_band = 0.5;
   options.radius = radius;
   try {
-    return dominant_subspace(multiply, start, options);
+    return dominant_subspace(comm, multiply, start, options);
   } catch (const core::NotConverged&) {
     if (radius >= above_a_band) throw;
   }
   options.radius = radius = above_a_band;
-  options.persistent = true;
-  return dominant_subspace(multiply, start, options);
+  return dominant_subspace(comm, multiply, start, options);
 }
 
 }  // namespace whirl::solve

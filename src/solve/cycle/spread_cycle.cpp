@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "solve/cycle/dominant_subspace.hpp"
 #include "solve/newton/local_part.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -195,11 +196,12 @@ void SpreadCycle::linearise(Vec u, Vec row) {
   sum_over_time(ends_added_);
 
   const bool stale = solves_ > stale_after || !image_known_;
-  if (stale)
+  if (stale) {
     (void)find_subspace();
-  else
-    basis_ = image_;
-  if (!stale) orthonormalise(basis_, 0);
+  } else {
+    basis_.resize(local_, 0);
+    add_orthonormal(system_.comm(), basis_, image_);
+  }
   find_image();
   prepare();
 }

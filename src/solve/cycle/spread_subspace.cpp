@@ -24,21 +24,6 @@ constexpr double subspace_tolerance = 1e-3;
 
 }  // namespace
 
-// Columns to an orthonormal basis of their span, one after the other, so that leading columns span what they did.
-void SpreadCycle::orthonormalise(MatrixXd& v, Index from) const {
-  for (Index c = from; c < v.cols(); ++c) {
-    for (int pass = 0; pass < 2; ++pass) {
-      MatrixXd inner = v.leftCols(c).transpose() * v.col(c);
-      sum(inner);
-      v.col(c) -= v.leftCols(c) * inner;
-      MatrixXd square(1, 1);
-      square(0) = v.col(c).squaredNorm();
-      sum(square);
-      v.col(c) /= std::sqrt(square(0));
-    }
-  }
-}
-
 // M V. While V is not invariant and gets better at once, V <- orth(M V): it spares linear iterations. Multipliers below
 // the radius are near it or not, which does not change from one point to the next: what did not help is not tried
 // again.
@@ -58,36 +43,18 @@ void SpreadCycle::find_image() {
     if (k > 0) contraction_ = defect / last;
     if (defect <= invariant || k == most || contraction_ > at_once) return;
     last = defect;
-    basis_ = image_;
-    orthonormalise(basis_, 0);
+    basis_.resize(local_, 0);
+    add_orthonormal(system_.comm(), basis_, image_);
   }
 }
 
 std::vector<std::complex<double>> SpreadCycle::find_subspace() {
-  VectorXd start(local_);
-  if (basis_.cols() > 0) {
-    start = basis_.rowwise().sum();
-  } else {
-    PetscInt begin = 0;
-    check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
-    for (Index k = 0; k < local_; ++k) start(k) = 1 + std::sin(0.7 * static_cast<double>(begin + k));
-  }
-  core::Vector first = core::duplicate(work_.get());
-  put(start, first.get());
+  if (basis_.cols() == 0) basis_.resize(local_, 0);
   SubspaceOptions options;
   options.most = options_.multipliers;
   options.tolerance = rough_ ? subspace_tolerance : options_.multiplier_tolerance;
-  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
   DominantSubspace found = dominant_multipliers(
-      [this](Vec v) {
-        MatrixXd state = get(v);
-        groups_.in_turn(state, [&] {
-          for (Index i = 0; i < count_; ++i) state = advance(i, state, nullptr, false).bottomRows(local_).eval();
-        });
-        put(state, v);
-        ++products_;
-      },
-      first.get(), options, radius_);
+      system_.comm(), [this](const MatrixXd& v) { return times(v); }, basis_, options, radius_);
   limited_ = !found.values.empty() && std::abs(found.values.back()) > radius_;
   if (found.basis.cols() != basis_.cols()) contraction_ = 0;
   basis_ = std::move(found.basis);
@@ -104,20 +71,13 @@ std::vector<std::complex<double>> SpreadCycle::refined_multipliers() {
   const Index p = basis_.cols();
   if (!image_known_ || p == 0 || p + probes > system_.size()) return {};
   if (limited_) return {};  // what V leaves out may have grown beyond what it holds
-  PetscInt begin = 0;
-  check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
-  MatrixXd x(local_, p + probes), y = x, added(borders_, p + probes), new_added;
-  x.leftCols(p) = basis_;
-  for (Index c = 0; c < probes; ++c)
-    for (Index k = 0; k < local_; ++k) {
-      const double phase = (0.7 + 0.4 * static_cast<double>(c)) * static_cast<double>(begin + k);
-      x(k, p + c) = 1 + std::sin(phase + std::sin(phase * phase));
-    }
-  orthonormalise(x, p);
+  MatrixXd x = basis_;
+  add_orthonormal(system_.comm(), x, generic_columns(system_.comm(), local_, probes));
   if (rough_image_) image_ = monodromy_times(basis_, basis_added_);
   rough_image_ = false;
+  MatrixXd y(local_, x.cols()), added(borders_, x.cols()), new_added;
   y.leftCols(p) = image_;
-  y.rightCols(probes) = monodromy_times(x.rightCols(probes), new_added);
+  y.rightCols(x.cols() - p) = monodromy_times(x.rightCols(x.cols() - p), new_added);
   added << basis_added_, new_added;
   for (int k = 0;; ++k) {
     MatrixXd projected = x.transpose() * y;
@@ -147,8 +107,8 @@ std::vector<std::complex<double>> SpreadCycle::refined_multipliers() {
       return values;
     }
     if (k == most || sizes.maxCoeff() > slow * slow) return {};
-    x = y;
-    orthonormalise(x, 0);
+    x.resize(local_, 0);
+    add_orthonormal(system_.comm(), x, y);
     y = monodromy_times(x, added);
   }
 }

@@ -118,30 +118,17 @@ void SweepComposition::solve_transposed(const double* rhs, VectorXd& border, dou
 
 std::vector<std::complex<double>> SweepComposition::multipliers() {
   const Index n = run_->n;
-  core::Vector first = core::make_vector(run_->comm, static_cast<PetscInt>(local()), static_cast<PetscInt>(n));
-  {
-    const core::WriteArray a(first.get());
-    for (PetscInt k = 0; k < a.size(); ++k)
-      a[k] = basis_.cols() > 0 ? basis_.row(k).sum() : 1 + std::sin(0.7 * static_cast<double>(k));
-  }
-  const auto times_m = [this](Vec v) {
-    MatrixXd state = MatrixXd::Zero(run_->n, 1), added;
-    {
-      const core::ReadArray a(v);
-      if (last()) state = Map<const VectorXd>(a.data(), run_->n);
-    }
+  const auto times_m = [this](const MatrixXd& v) {
+    MatrixXd state = MatrixXd::Zero(run_->n, v.cols()), added;
+    if (last()) state = v;
     turn(state, added);
-    const core::WriteArray a(v);
-    if (last()) Map<VectorXd>(a.data(), run_->n) = state.col(0);
+    return MatrixXd(state.topRows(local()));
   };
   SubspaceOptions options;
-  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
   options.most = run_->multipliers;
-  // From the last point's subspace a few vectors do: what is left of M falls by orders of magnitude.
-  if (basis_.cols() > 0) options.spare = 4;
   DominantSubspace found;
   try {
-    found = dominant_multipliers(times_m, first.get(), options, radius_);
+    found = dominant_multipliers(run_->comm, times_m, basis_, options, radius_);
   } catch (const core::NotConverged&) {
     if (n > whole_up_to) throw;
     found_ = false;

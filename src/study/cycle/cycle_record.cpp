@@ -219,7 +219,7 @@ void CycleRecord::warn_of_unknown(io::StudySummary& summary) const {
       least == most ? fmt::format("{:.6g} {}", least, unit_) : fmt::format("{:.6g} to {:.6g} {}", least, most, unit_);
   summary.warnings.push_back(fmt::format(
       "the search for multipliers did not converge at {} of {} points, {}: whether the motion is stable there is not "
-      "known (-monodromy_eps_max_it, -monodromy_eps_ncv)",
+      "known (-monodromy_products)",
       places.size(), table_.rows(), where));
 }
 

@@ -120,7 +120,6 @@ private:
   Eigen::MatrixXd monodromy_times(const Eigen::MatrixXd& v, Eigen::MatrixXd& added) const;
   [[nodiscard]] Eigen::MatrixXd complement(const Eigen::MatrixXd& v) const;
   Eigen::MatrixXd picard(const Eigen::MatrixXd& right, Eigen::MatrixXd& image, Eigen::MatrixXd& added) const;
-  void orthonormalise(Eigen::MatrixXd& v, Eigen::Index from) const;
   std::vector<std::complex<double>> find_subspace();
   std::vector<std::complex<double>> refined_multipliers();
   void find_image();
