@@ -123,13 +123,17 @@ Trail Walker::trail() {
     if (!x_) return std::vector<double>{};  // it has found nothing yet
     std::vector<double> state = system_.gather(x_.get());
     state.push_back(last_);
+    const std::vector<double> anchor = equilibria_.anchor();
+    state.insert(state.end(), anchor.begin(), anchor.end());
     return state;
   };
   const auto take = [this](const std::vector<double>& state) {
     if (state.empty()) return void(x_ = {});
     if (!x_) x_ = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
-    core::fill(x_.get(), {state.begin(), state.end() - 1});
-    last_ = state.back();
+    const auto size = static_cast<std::ptrdiff_t>(system_.size());
+    core::fill(x_.get(), {state.begin(), state.begin() + size});
+    last_ = state[static_cast<std::size_t>(size)];
+    equilibria_.take_anchor({state.begin() + size + 1, state.end()});
   };
   return {leave, take};
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include "whirl/core/error.hpp"
 #include "whirl/core/plan.hpp"
@@ -24,6 +25,13 @@ MatrixXd summed(MPI_Comm comm, MatrixXd m) {
   return m;
 }
 
+// The same on all ranks.
+[[noreturn]] void fail(const std::string& why) {
+  core::NotConverged error(why);
+  error.mark_agreed();
+  throw error;
+}
+
 // Eigenpairs of V^T M V and the residuals of their vectors.
 struct Ritz {
   VectorXcd values;  // by falling modulus, the two of a pair side by side
@@ -34,8 +42,11 @@ struct Ritz {
 
 Ritz ritz(MPI_Comm comm, const MatrixXd& v, const MatrixXd& image, Index most) {
   const MatrixXd projected = summed(comm, v.transpose() * image);
-  if (!projected.allFinite()) throw core::NotConverged("products with the monodromy matrix are not finite");
-  const spectral::Eigenpairs pairs = spectral::eigenpairs(projected);
+  if (!projected.allFinite()) fail("products with the monodromy matrix are not finite");
+  spectral::Eigenpairs pairs = spectral::eigenpairs(projected);
+  // What all decide by must not depend on the last digit of a rank's arithmetic.
+  MPI_Bcast(pairs.values.data(), static_cast<int>(pairs.values.size()), MPI_C_DOUBLE_COMPLEX, 0, comm);
+  MPI_Bcast(pairs.vectors.data(), static_cast<int>(pairs.vectors.size()), MPI_C_DOUBLE_COMPLEX, 0, comm);
   std::vector<Index> order(static_cast<std::size_t>(pairs.values.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
@@ -67,6 +78,7 @@ MatrixXd generic_columns(MPI_Comm comm, Index local, Index columns) {
   long before = 0;
   const long mine = local;
   MPI_Exscan(&mine, &before, 1, MPI_LONG, MPI_SUM, comm);
+  if (core::rank_of(comm) == 0) before = 0;
   MatrixXd out(local, columns);
   for (Index c = 0; c < columns; ++c)
     for (Index k = 0; k < local; ++k) {
@@ -96,15 +108,16 @@ void add_orthonormal(MPI_Comm comm, MatrixXd& v, const MatrixXd& more) {
 
 DominantSubspace dominant_subspace(MPI_Comm comm, const BlockProduct& multiply, const MatrixXd& start,
                                    const SubspaceOptions& options) {
-  constexpr Index probes = 2, first = 4, widest = 240;
+  constexpr Index probes = 2, first = 4;
   // A Ritz value below the radius tells nothing of what a small basis does not hold: it has to be an eigenvalue, or the
   // basis has room for more than are wanted.
-  constexpr double exact = 1e-8;
+  const double exact = std::max(1e-8, 1e-2 * options.tolerance);
   const Index spare = start.cols() > 0 ? 12 : 20;
   const Index local = start.rows();
   long states = local;
   MPI_Allreduce(MPI_IN_PLACE, &states, 1, MPI_LONG, MPI_SUM, comm);
   const auto n = static_cast<Index>(states);
+  const Index widest = n <= 20000 ? 240 : 80;  // vectors that are kept with their products
   const Index beside = std::clamp<Index>(n - start.cols(), 0, start.cols() > 0 ? probes : first);
   MatrixXd v(local, 0), image(local, 0), more(local, start.cols() + beside);
   more << start, generic_columns(comm, local, beside);
@@ -120,25 +133,29 @@ DominantSubspace dominant_subspace(MPI_Comm comm, const BlockProduct& multiply, 
     DominantSubspace out;
     std::vector<Index> large, open;
     bool below = false;
-    for (Index k = 0; k < found.residual.size() && !below; ++k) {
-      const double modulus = std::abs(found.values(k));
+    for (Index k = 0; k < found.residual.size(); ++k) {
+      const double modulus = std::abs(found.values(k)), residual = found.residual(k);
       const bool second = found.values(k).imag() < 0;
       if (static_cast<int>(large.size()) >= options.most && !second) break;
-      below = modulus + found.residual(k) < options.radius &&
-              (found.residual(k) <= exact || v.cols() >= std::min(n, std::ssize(large) + spare));
-      if (!below && found.residual(k) > options.tolerance * modulus) open.push_back(k);
-      if (!below && modulus > options.radius) large.push_back(k);
+      const bool room = v.cols() >= std::min(n, std::ssize(large) + spare);
+      if (residual <= std::max(exact, options.tolerance * modulus))
+        below = modulus <= options.radius;
+      else
+        below = room && modulus + residual < options.radius;
       out.values.push_back(found.values(k));
-      if (!below && modulus <= options.radius) break;  // whether it is below is what is open
+      if (below) break;
+      if (!second && residual > options.tolerance * modulus) open.push_back(k);
+      if (modulus <= options.radius) break;  // whether it is below is what is open
+      large.push_back(k);
     }
     const bool enough = below || static_cast<int>(large.size()) >= options.most || v.cols() == n;
-    if (open.empty() && enough) {
+    if ((open.empty() || v.cols() == n) && enough) {
       add_orthonormal(comm, out.basis = MatrixXd(local, 0), v * real_columns(found.values, found.vectors, large));
       return out;
     }
     if (products >= core::plan::products() || v.cols() == known)
-      throw core::NotConverged(fmt::format("only {} of {} multipliers converged after {} products",
-                                           out.values.size() - open.size(), out.values.size(), products));
+      fail(fmt::format("only {} of {} multipliers converged after {} products", out.values.size() - open.size(),
+                       out.values.size(), products));
     more = open.empty() ? MatrixXd(generic_columns(comm, local, v.cols() + probes).rightCols(probes))
                         : real_columns(found.values, found.defect, open);
     if (n <= widest || v.cols() + more.cols() <= widest) continue;

@@ -10,29 +10,42 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-bool AnchoredHub::serves() {
-  const problem::SparseBlock& l0 = blocks_->l0;
-  if (!made_ || l0.rows() != l0_.rows() || l0.nonZeros() != l0_.nonZeros()) return false;
-  if (!std::equal(l0.outerIndexPtr(), l0.outerIndexPtr() + l0.cols() + 1, l0_.outerIndexPtr())) return false;
-  if (!std::equal(l0.innerIndexPtr(), l0.innerIndexPtr() + l0.nonZeros(), l0_.innerIndexPtr())) return false;
-  std::vector<bool> of_rate(static_cast<std::size_t>(l0.cols()), false);
-  for (const problem::KinematicRow& k : blocks_->kinematic) of_rate[static_cast<std::size_t>(k.rate)] = true;
-  exact_ = true;
-  for (Index c = 0; c < l0.cols(); ++c) {
-    const int begin = l0.outerIndexPtr()[c], end = l0.outerIndexPtr()[c + 1];
-    if (std::equal(l0.valuePtr() + begin, l0.valuePtr() + end, l0_.valuePtr() + begin)) continue;
-    exact_ = false;
-    if (!of_rate[static_cast<std::size_t>(c)]) return false;
-  }
-  return true;
+namespace {
+
+bool same(const problem::SparseBlock& a, const problem::SparseBlock& b) {
+  const auto equal = [](const auto* p, const auto* q, Index count) { return std::equal(p, p + count, q); };
+  return a.rows() == b.rows() && a.cols() == b.cols() && a.nonZeros() == b.nonZeros() &&
+         equal(a.outerIndexPtr(), b.outerIndexPtr(), a.cols() + 1) &&
+         equal(a.innerIndexPtr(), b.innerIndexPtr(), a.nonZeros()) && equal(a.valuePtr(), b.valuePtr(), a.nonZeros());
+}
+
+}  // namespace
+
+problem::SparseBlock AnchoredHub::without_rates() const {
+  std::vector<int> row_of(static_cast<std::size_t>(blocks_->l0.cols()), -1);  // that says which state's rate it is
+  for (const problem::KinematicRow& k : blocks_->kinematic) row_of[static_cast<std::size_t>(k.rate)] = k.row;
+  problem::SparseBlock out = blocks_->l0;
+  for (Index c = 0; c < out.cols(); ++c)
+    if (const int own = row_of[static_cast<std::size_t>(c)]; own >= 0)
+      for (problem::SparseBlock::InnerIterator it(out, c); it; ++it)
+        if (it.row() != own) it.valueRef() = 0;
+  return out;
 }
 
 bool AnchoredHub::factorise(const MatrixXd& anchor) {
   anchor_ = anchor;
-  l0_ = blocks_->l0;
   const problem::SparseBlock forces = MatrixXd(anchor_ * blocks_->c).sparseView(), ports = blocks_->b * forces;
-  made_ = exact_ = lu_.factorise(l0_ - ports, blocks_->b, blocks_->c) && lu_.seen().allFinite();
+  made_ = lu_.factorise(l0_ - ports, blocks_->b, blocks_->c) && lu_.seen().allFinite();
   return made_;
+}
+
+// At a fold M is singular or nearly so. Stiffer films move the place where it is.
+bool AnchoredHub::anchor_at(const MatrixXd& tangents) {
+  constexpr double nearly_singular = 1e6, stiffer = 1.1;
+  const auto near_a_fold = [&] {
+    return tangents.size() > 0 && (tangents * lu_.seen()).cwiseAbs().maxCoeff() > nearly_singular;
+  };
+  return (factorise(tangents) && !near_a_fold()) || factorise(stiffer * tangents);
 }
 
 bool AnchoredHub::set(const problem::ThinBlocks& blocks, const MatrixXd& tangents, VectorXd column, VectorXd row) {
@@ -41,14 +54,20 @@ bool AnchoredHub::set(const problem::ThinBlocks& blocks, const MatrixXd& tangent
   blocks_ = &blocks;
   const Index r = blocks.b.cols(), n = blocks.l0.rows();
   const bool anchored = anchor_.rows() == r && anchor_.cols() == tangents.cols();
-  if (!serves() && !(anchored && factorise(anchor_)) && !factorise(tangents)) return false;
+  problem::SparseBlock l0 = without_rates();
+  if (!made_ || !same(l0, l0_) || !same(blocks.b, b_) || !same(blocks.c, c_)) {
+    l0_ = std::move(l0);
+    b_ = blocks.b;
+    c_ = blocks.c;
+    if (!(anchored && factorise(MatrixXd(anchor_))) && !anchor_at(tangents)) return false;
+  }
   const auto change = [&] {
     moved_ = tangents - anchor_;
     return MatrixXd(moved_ * lu_.seen());
   };
   MatrixXd through = change();
   if (through.size() > 0 && through.cwiseAbs().maxCoeff() > most) {
-    if (!factorise(tangents)) return false;
+    if (!anchor_at(tangents)) return false;
     through = change();
   }
   tangents_ = tangents;
@@ -112,12 +131,12 @@ VectorXd AnchoredHub::apply_transposed(const VectorXd& y) const {
 
 VectorXd AnchoredHub::solve(const VectorXd& y) const {
   const VectorXd x = apply(y);
-  return exact_ ? x : x + apply(y - multiply(x));
+  return x + apply(y - multiply(x));
 }
 
 VectorXd AnchoredHub::solve_transposed(const VectorXd& y) const {
   const VectorXd x = apply_transposed(y);
-  return exact_ ? x : x + apply_transposed(y - multiply_transposed(x));
+  return x + apply_transposed(y - multiply_transposed(x));
 }
 
 }  // namespace whirl::solve

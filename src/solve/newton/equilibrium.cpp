@@ -106,6 +106,12 @@ void EquilibriumProblem::prepare(Vec u) {
   std::copy_n(ua.data(), scaled_.size(), scaled_.data());
 }
 
+void EquilibriumProblem::equations_changed() {
+  if (!point_) return;
+  point_->refresh();
+  refreshed_at_ = system_.parameter();
+}
+
 void EquilibriumProblem::residual(Vec u, Vec r) {
   prepare(u);
   if (point_) {
@@ -196,6 +202,19 @@ bool EquilibriumProblem::linearise_on_ports() {
   const core::ReadArray row(row_.get());
   return hub_on_ports_->set(point_->thin_blocks(), at_.films.d_inputs, value_ * parameter_scale_,
                             Eigen::Map<const Eigen::VectorXd>(row.data(), row.size()));
+}
+
+std::vector<double> EquilibriumProblem::anchor() const {
+  if (!hub_on_ports_) return {};
+  const Eigen::MatrixXd& tangents = hub_on_ports_->anchor();
+  return {tangents.data(), tangents.data() + tangents.size()};
+}
+
+void EquilibriumProblem::take_anchor(const std::vector<double>& anchor) {
+  if (!point_ || anchor.empty()) return;
+  const problem::ThinBlocks& blocks = point_->thin_blocks();
+  core::require(std::ssize(anchor) == blocks.b.cols() * blocks.c.rows(), "tangents of this machine");
+  hub_on_ports_->set_anchor(Eigen::Map<const Eigen::MatrixXd>(anchor.data(), blocks.b.cols(), blocks.c.rows()));
 }
 
 void EquilibriumProblem::answer(Eigen::VectorXd (AnchoredHub::*by)(const Eigen::VectorXd&) const, Vec from,

@@ -1,5 +1,5 @@
 #pragma once
-// LU of the linear part of a machine, with what thin forces make of it.
+// LU of the linear part of a machine, with its answers to the forces of films.
 
 #include <Eigen/Core>
 

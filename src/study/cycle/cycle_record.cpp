@@ -181,7 +181,8 @@ std::vector<std::vector<double>> CycleRecord::drawn(const CycleOrbit& orbit) con
 }
 
 double CycleRecord::eccentricity(const CycleOrbit& orbit) const {
-  return std::ranges::max(per_clearance(extremes(sample(orbit, samples_per_orbit), places_.names.size()).radius));
+  const auto radii = per_clearance(extremes(sample(orbit, samples_per_orbit), places_.names.size()).radius);
+  return radii.empty() ? 0.0 : std::ranges::max(radii);
 }
 
 double CycleRecord::modulus(int point) const {

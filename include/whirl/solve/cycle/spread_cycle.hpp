@@ -35,10 +35,10 @@ struct NewtonPicardOptions {
 ///     x_0 = V p + q_R + q_E d,  then the intervals forward.
 ///
 /// It preconditions GMRES around multiply(), which is exact: Newton keeps its quadratic convergence, folds stay regular
-/// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation, with
-/// a size that follows the radius; then orthogonal subspace iteration V <- orth(M V) keeps it, of which the first one
-/// costs nothing, because M V is known. multipliers() takes V as long as it is invariant, two generic vectors find no
-/// other multiplier above the radius, and their number stays; else Krylov-Schur again. Source: Lust (1997); van de
+/// and tangents are exact, while the subspace need not be. V is found by products of blocks at the first linearisation,
+/// with a size that follows the radius; then orthogonal subspace iteration V <- orth(M V) keeps it, of which the first
+/// one costs nothing, because M V is known. multipliers() takes V as long as it is invariant, two generic vectors find
+/// no other multiplier above the radius, and their number stays; else it is found again. Source: Lust (1997); van de
 /// Vrande (2001), Sec. 3.2 and (3.18), with errata.
 ///
 /// Groups of ranks share the intervals: each evaluates and linearises its own, and sweeps go from group to group. A

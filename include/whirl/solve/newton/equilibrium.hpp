@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "whirl/problem/scaled_point.hpp"
 #include "whirl/solve/newton/adjoint.hpp"
@@ -23,11 +24,10 @@ class PortMatrix;
 /// their ports (`port_elimination`), with the border part of what is left, by their own preconditioners where all have
 /// one: from blocks that are spread like the films, and no matrix is assembled unless it is asked for. A machine
 /// without films is all hub. All are regular at folds. Where iterations on approximate inverses do not come to the
-/// tolerance
-/// (-equilibrium_ksp_rtol, 1e-12; -equilibrium_ksp_max_it, 100), and for transposes, such films are factorised if the
-/// machine has at most -parts_whole_states (1,000,000). Otherwise solve() throws core::DomainError with the reason,
-/// which ends Newton's method without convergence, and solve_transposed() core::NotConverged. The Krylov method around
-/// preconditioners has the prefix "equilibrium_".
+/// tolerance (-equilibrium_ksp_rtol, 1e-12; -equilibrium_ksp_max_it, 100), and for transposes, such films are
+/// factorised if the machine has at most -parts_whole_states (1,000,000). Otherwise solve() throws core::DomainError
+/// with the reason, which ends Newton's method without convergence, and solve_transposed() core::NotConverged. The
+/// Krylov method around preconditioners has the prefix "equilibrium_".
 class EquilibriumProblem : public ExtendedProblem, public Adjoint {
 public:
   /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
@@ -50,10 +50,15 @@ public:
   [[nodiscard]] Mat matrix() override;
   [[nodiscard]] std::vector<problem::Field> fields() const override { return system_.fields(); }
   void solve_transposed(Vec rhs, Vec x) override;
+  void equations_changed() override;
   void curvature(Vec u, Vec v, Vec w, Vec out) override;
   /// The same along a motion: (x, dx/dt) moves by eps (v, rate), v with an entry for the parameter, `rate` [n] scaled
   /// like the states (null: none).
   void curvature(Vec u, Vec v, Vec rate, Vec w, Vec out);
+
+  /// What solves on the ports round by (AnchoredHub::anchor()), to go on from: it moves answers within their rounding.
+  [[nodiscard]] std::vector<double> anchor() const;
+  void take_anchor(const std::vector<double>& anchor);
 
   [[nodiscard]] Vec state_scale() const { return state_scale_.get(); }
   [[nodiscard]] Vec residual_scale() const { return residual_scale_.get(); }
@@ -104,6 +109,9 @@ public:
   /// Solves F(0, x, 0) = 0 at the system's parameter from the guess in x. Collective.
   NewtonResult find(Vec x, const NewtonOptions& options);
   [[nodiscard]] problem::System& system() const { return system_; }
+  /// Of the problem.
+  [[nodiscard]] std::vector<double> anchor() const { return problem_.anchor(); }
+  void take_anchor(const std::vector<double>& anchor) { problem_.take_anchor(anchor); }
 
 private:
   problem::System& system_;
