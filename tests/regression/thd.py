@@ -320,7 +320,7 @@ def resume(h):
         out = h.work / f"killed {before} {ranks}"
         h.kill_at_checkpoint(deck, out, words, launcher=on(before), after=4 if before == 1 else 2)
         with h5py.File(next(out.glob("*.checkpoint.h5"))) as f:
-            kept = [len(item) for path, item in everything(f) if path.endswith("state/table/speed")]
+            kept = [len(item) for path, item in everything(f) if path.endswith("state/table/parameter")]
         h.true(f"{before} ranks, then {ranks}: speeds kept", len(kept) == 1 and 1 <= kept[0] < 5, f"{kept}")
         h.run(deck, out.name, words, ["--resume"], on(ranks))
         if before == ranks:

@@ -109,6 +109,7 @@ void add_orthonormal(MPI_Comm comm, MatrixXd& v, const MatrixXd& more) {
 DominantSubspace dominant_subspace(MPI_Comm comm, const BlockProduct& multiply, const MatrixXd& start,
                                    const SubspaceOptions& options) {
   constexpr Index probes = 2, first = 4;
+  constexpr std::ptrdiff_t shown = 4;  // values at least, where there are as many
   // A Ritz value below the radius tells nothing of what a small basis does not hold: it has to be an eigenvalue, or the
   // basis has room for more than are wanted.
   const double exact = std::max(1e-8, 1e-2 * options.tolerance);
@@ -136,14 +137,14 @@ DominantSubspace dominant_subspace(MPI_Comm comm, const BlockProduct& multiply, 
     for (Index k = 0; k < found.residual.size(); ++k) {
       const double modulus = std::abs(found.values(k)), residual = found.residual(k);
       const bool second = found.values(k).imag() < 0;
-      if (static_cast<int>(large.size()) >= options.most && !second) break;
-      const bool room = v.cols() >= std::min(n, std::ssize(large) + spare);
-      if (residual <= std::max(exact, options.tolerance * modulus))
-        below = modulus <= options.radius;
-      else
-        below = room && modulus + residual < options.radius;
+      if (!second && (std::ssize(large) >= options.most || (below && std::ssize(out.values) >= shown))) break;
       out.values.push_back(found.values(k));
-      if (below) break;
+      const bool settled = residual <= std::max(exact, options.tolerance * modulus),
+                 room = v.cols() >= std::min(n, std::ssize(large) + spare);
+      if (settled ? modulus <= options.radius : room && modulus + residual < options.radius) {
+        below = true;
+        continue;
+      }
       if (!second && residual > options.tolerance * modulus) open.push_back(k);
       if (modulus <= options.radius) break;  // whether it is below is what is open
       large.push_back(k);
