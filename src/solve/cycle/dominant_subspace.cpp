@@ -89,7 +89,7 @@ MatrixXd generic_columns(MPI_Comm comm, Index local, Index columns) {
 }
 
 void add_orthonormal(MPI_Comm comm, MatrixXd& v, const MatrixXd& more) {
-  constexpr double in_span = 1e-8;  // what is left of such a column is rounding
+  constexpr double in_span = 1e-8;  // a column that loses as much lies in the span
   const Index known = v.cols();
   const Eigen::VectorXd sizes = summed(comm, more.colwise().squaredNorm().transpose()).cwiseSqrt();
   MatrixXd x = more;

@@ -15,14 +15,14 @@ namespace whirl::solve {
 ///     [ L0 - B D C   column ] [ x ]   [ y   ]
 ///     [ row          corner ] [ p ] = [ y_p ]
 ///
-/// L0 alone may be that of a free shaft. So it is factorised with D0, the tangents where it was first asked for: M = L0
-/// - B D0 C is regular as equilibria are. What D differs by enters at the ports,
+/// L0 alone may be that of a free shaft, which is singular. M = L0 - B D0 C is factorised in its place. D0 are the
+/// tangents of the first point, 1.1 times these where M would be singular or nearly so. D - D0 enters at the ports,
 ///
 ///     x = M^-1 y + M^-1 B f - M^-1 column p,     f = (D - D0) C x
 ///
-/// and is solved with the border as a matrix of size r + 1 (Woodbury), which is regular at folds too. Columns of rates
-/// meet the kinematic rows alone: M leaves them out, and one step of refinement puts that right. So M serves at all
-/// points with the same other columns: a shaft has one at all speeds, unless damping turns with it.
+/// and is solved with the border as a matrix of size r + 1 (Woodbury 1950), which is regular at folds too. Columns of
+/// rates meet the kinematic rows alone: M leaves them out, and one step of refinement puts that right. So M serves at
+/// all points with the same other columns: a shaft has one at all speeds, unless damping turns with it.
 class AnchoredHub {
 public:
   /// D [r x w], column [n], row [n + 1] with the corner; `blocks` outlive the solves. False if M is singular, and then
